@@ -1,7 +1,7 @@
 //! Contact: bodies that touch each other, themselves, or tools. A law is one file and one line of
 //! [`register`].
 //!
-//! Folders stand in the order in which they use each other, and import only those above them.
+//! The folders are listed in the order of their dependencies, and import only those above them.
 
 /// Normal forces as functions of the overlap.
 mod laws;

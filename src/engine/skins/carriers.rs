@@ -4,9 +4,9 @@
 //! that carries the image of the vertex. A skin that ends at a plane is then half of the skin of the whole
 //! body. At the ends of a period images a period away are carriers.
 //!
-//! Particles that have been put onto a held side stand for the cells that they had in their lattice: shares
-//! follow from where they were. By where they are now, the first layer beside the side would carry three
-//! quarters of a load that acts on its cell, and the next one five quarters.
+//! Particles that have been moved onto a held side represent the cells that they had in their lattice: shares
+//! follow from their lattice positions. With their present positions, the first layer beside the side would
+//! carry three quarters of a load that acts on its cell, and the next one five quarters.
 
 use glam::DVec3;
 

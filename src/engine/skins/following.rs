@@ -1,11 +1,10 @@
-//! Skins of bodies whose kernels live in the present configuration: the shares of carriers follow the
-//! deformation.
+//! Skins of Eulerian bodies: the shares of carriers follow the deformation.
 //!
-//! Where such a body is pressed flat, kernels reach over many layers of particles, and a uniform stress is in
-//! balance with a load on the surface only if the load acts on as many layers, by about the kernel. With the
-//! shares of the start the outermost layer alone would carry it, and a multiple of the stress of the next
-//! one; under a Taylor bar it was squeezed out. The share of a carrier thus depends on the present distance
-//! of the vertex from it:
+//! Where such a body is compressed strongly, kernels extend over many layers of particles, and a uniform
+//! stress is in equilibrium with a load on the surface only if the load is distributed over as many layers,
+//! about like the kernel. With the initial shares the outermost layer alone would carry it, with a multiple
+//! of the stress of the next layer; at the foot of a Taylor bar it was squeezed out. The share of a carrier
+//! thus depends on the present distance of the vertex from it:
 //!
 //! ```text
 //! x = sum_j s_j y_j ,   y_j = x_j + F_j (X - X_j) ,   s_j ~ (1 - d_j/R)^3 ,   d_j = |F_j (X - X_j)| ,   sum s_j = 1
@@ -13,8 +12,8 @@
 //!
 //! The transpose has the change of the shares with F: a force f on a vertex is s_j f on the particles, and
 //! the couples `[s_j f + (f . u_j) g_j] (x) (X - X_j)` with `u_j = y_j - x` and g_j the slope of the share
-//! along `F_j (X - X_j)`. Undeformed, all is as in Lagrangian bodies. For particles that have been put onto a
-//! held side, distances and slopes are those from the middle of their cells.
+//! along `F_j (X - X_j)`. In the undeformed state the shares are those of Lagrangian bodies. For particles
+//! that have been moved onto a held side, distances and slopes are relative to the middle of their cells.
 
 use glam::{DMat3, DVec3};
 

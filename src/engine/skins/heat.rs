@@ -1,5 +1,4 @@
-//! Heat on the vertices of a patch, which its particles take up with the shares by which they carry the
-//! vertices.
+//! Heat on the vertices of a patch, distributed to its particles by their shares of the vertices.
 
 use super::patch::Patch;
 use crate::parallel::{Picked, sum_over_blocks};

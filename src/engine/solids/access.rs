@@ -1,4 +1,4 @@
-//! What the pass over solids touches.
+//! Declared access of the pass over solids.
 
 use super::bodies::SolidBodies;
 use super::losses::TakenUp;

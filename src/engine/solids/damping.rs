@@ -4,9 +4,9 @@
 //! A body with sub-steps in the long step of a fluid feels a force that lags behind its motion by up to the
 //! long step. A mode of the body whose phase advances by theta = omega dt in it gains the share `kappa /
 //! omega^2 (1 - cos theta - theta/2 sin theta)` of its energy per step, where kappa is the stiffness of the
-//! adjacent fluid over its mass; for theta above one the fluid resolves no wave that could carry this away.
-//! Slow modes gain with theta^4. Stiffness-proportional damping removes energy with theta^2 and so bounds all
-//! of them. The stress is that of the strain extrapolated by a share c of the last sub-step,
+//! adjacent fluid over its mass; for theta above one the fluid resolves no wave that could radiate this
+//! energy. Slow modes gain with theta^4. Stiffness-proportional damping removes energy with theta^2 and so
+//! bounds all of them. The stress is that of the strain extrapolated by a share c of the last sub-step,
 //!
 //! `S_v = c (lambda tr(dE) I + 2 mu dE)`, `P = F (S + S_v)`, `dE = E_n - E_n-1`,
 //!

@@ -1,9 +1,9 @@
 //! Stabilization by the difference of two second derivatives of the positions, as a plugin requests it for
 //! bodies. The formulation computes it with its own neighbours and weights.
 //!
-//! Motions that do not change the averaged gradient are seen by a second derivative of the positions, but not
-//! by the gradient of the gradient. The difference vanishes for affine motions, decreases with the spacing
-//! for smooth ones, and is resisted.
+//! Motions that do not change the averaged gradient change a second derivative of the positions, but not the
+//! gradient of the gradient. The difference vanishes for affine motions, decreases with the spacing for
+//! smooth ones, and is resisted.
 
 use glam::DVec3;
 

@@ -1,7 +1,8 @@
-//! Losses: particles that have been removed or have failed, as far as the sums of a solid know of them.
+//! Losses: particles that have been removed or have failed, and whether the sums of a solid already leave
+//! them out.
 //!
-//! What is lost in a step leaves the sums in the next one. A run that goes on from a checkpoint between the
-//! two has to know which losses these sums had taken up: a column says so, row by row.
+//! A particle lost in a step is left out of the sums from the next step on. For a run that resumes from a
+//! checkpoint between the two, a column stores per row which losses the sums already include.
 
 use crate::column;
 

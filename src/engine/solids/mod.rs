@@ -1,4 +1,4 @@
-//! What every formulation of solids shares. It knows no neighbour list.
+//! Parts shared by all formulations of solids, without neighbour lists.
 //!
 //! The data flow of a solid in a step, in the words of the files here:
 //!
@@ -6,7 +6,7 @@
 //! set-up        the formulation puts its packed rows into the resources as a `SolidPhase`           (phase)
 //! Constitutive  the formulation fits F to the neighbours of a block of particles, then
 //!                 `Constitutive::stress`  F -> law -> P, damping of sub-steps                      (constitutive, refit, damping)
-//!                 the formulation makes what neighbours read of it: A = P M^-1                       (corrected_stress)
+//!                 the formulation computes the record for neighbours: A = P M^-1                     (corrected_stress)
 //!                 `Constitutive::fold`    terms of plugins add to A and k                            (folded)
 //!                 `SolidSum::close`       energies of the block
 //!                 differences of second derivatives of positions, and control along pairs, add to A  (hessian, pair_control)

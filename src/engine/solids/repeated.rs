@@ -1,4 +1,4 @@
-//! What a pass that is repeated at the same places changes: after an update of the reference, or a cut.
+//! Changes by a pass that is repeated at the same positions: after an update of the reference, or a cut.
 
 use super::bodies::SolidBodies;
 use super::constitutive::SolidSum;

@@ -3,10 +3,10 @@
 //! The largest frequency of the scheme is estimated particle by particle from sums over its bonds. Stress
 //! gives `omega^2 = STRESS_FACTOR c_l^2 b_i` with `b_i = (sum_j V_j w_ij) trace(M_i^-1) / d`, which grows
 //! where the support is cut by a surface; a bond stiffness k_i = s E_i gives `omega^2 = BOND_FACTOR s E_i
-//! (sum_j V_j w_ij) / rho`. The two constants envelope the largest eigenvalue of the assembled linear
-//! operator of free square and cubic blocks, regular and irregular, for spiky and Wendland kernels of 2 to 3
-//! spacings support; tests/stable_step.rs of the hourglass plugin compares with the largest frequency that a
-//! naive second implementation finds.
+//! (sum_j V_j w_ij) / rho`. The two constants are upper bounds of the largest eigenvalue of the assembled
+//! linear operator of free square and cubic blocks, regular and irregular, for spiky and Wendland kernels
+//! with supports of 2 to 3 spacings; tests/stable_step.rs of the hourglass plugin compares with the largest
+//! frequency of a naive second implementation.
 
 /// Stress: omega^2 = `STRESS_FACTOR` c_l^2 b_i.
 const STRESS_FACTOR: f64 = 1.45;

@@ -1,4 +1,4 @@
-//! The symmetry planes and periodic axes by which bodies of a scene repeat.
+//! The symmetry planes and periodic axes of the bodies of a scene.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! The minimum of lengths.
+//! The minimum of lengths, in parallel.
 
 use crate::parallel::BlockSum;
 

@@ -1,4 +1,4 @@
-//! Errors of the system of contact.
+//! Errors of the contact system.
 
 use crate::schedule::StepError;
 

@@ -1,9 +1,9 @@
 //! Bounds of the motion and the stretches of the bodies in contact, which determine how long a list of
 //! candidates is valid.
 //!
-//! Velocities of a body lie in a ball around a velocity of its own. So two bodies approach each other at most
-//! with the distance of their two velocities and both radii, which no common velocity changes, and no third
-//! body.
+//! Velocities of a body lie in a ball around a velocity of its own. The closing speed of two bodies is
+//! therefore at most the distance of these two velocities plus both radii. It depends neither on a common
+//! velocity nor on a third body.
 
 use glam::DVec3;
 

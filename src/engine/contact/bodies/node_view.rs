@@ -1,4 +1,4 @@
-//! Nodes that touch a surface: particles of a deformable body, or points of a rigid one.
+//! Contact nodes: particles of a deformable body, or points of a rigid one.
 
 use glam::DVec3;
 

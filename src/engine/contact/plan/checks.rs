@@ -1,4 +1,4 @@
-//! Contacts of a scene that cannot be.
+//! Invalid contacts of a scene.
 
 use super::body::{find, is_rigid};
 use crate::plugin::{BodyPlan, Offer, SimBuilder};

@@ -1,4 +1,4 @@
-//! The bodies that touch with their skins.
+//! The bodies whose contact surface is their skin.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! Bodies that overlap others at the start.
+//! Bodies with initial overlap.
 
 use crate::contact::bodies::{ContactSides, SideNodes};
 use crate::contact::system::Touching;

@@ -3,11 +3,12 @@
 //!
 //! Velocities are those of mid-step. The dashpots act on the velocity that results from the contact itself at
 //! the end of the step, `u = (u' - dt/2 w f)/(1 + dt/2 w c)` with the inverse mass w. They damp at any time
-//! step, and the restitution does not depend on the step to first order. Other forces act there too: bonds
-//! hold a particle of a body and balance the contact force f of the last step, weight and other contacts move
-//! a rigid body, whose acceleration a of the last step has f in it. So only the change of f counts, beside a:
-//! `u = (u' + dt/2 (a - w (f - f_last)))/(1 + dt/2 w c)`. Otherwise a dashpot would pull at pressed bodies at
-//! rest, its heat would be negative, and stacks would be kicked whenever the step changes.
+//! step, and the restitution does not depend on the step to first order. Other forces act there too: the
+//! bonds of a particle balance the contact force f of the last step, and weight and other contacts act on a
+//! rigid body, whose acceleration a of the last step includes f. So only the change of f counts, in addition
+//! to a: `u = (u' + dt/2 (a - w (f - f_last)))/(1 + dt/2 w c)`. Otherwise a dashpot would act on compressed
+//! bodies at rest, its dissipation would be negative, and stacks would receive an impulse whenever the step
+//! changes.
 
 use glam::DVec3;
 

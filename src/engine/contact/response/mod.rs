@@ -1,5 +1,4 @@
-//! One contact: its force from overlap and velocity, what it remembers of the last step, its energy and the
-//! time step that it allows.
+//! One contact: its force from overlap and velocity, its history, its energy and its stable time step.
 
 mod history;
 

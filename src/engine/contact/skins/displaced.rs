@@ -1,4 +1,4 @@
-//! How much closer two sets of vertices may have come.
+//! Bound of the approach of two sets of vertices.
 
 use glam::DVec3;
 

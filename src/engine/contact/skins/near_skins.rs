@@ -1,9 +1,9 @@
 //! Facets of two skins that may touch each other, searched again when the skins have moved by the margin of
 //! the search.
 //!
-//! Bounds of the speeds of the bodies say when the skins may have moved so far. Then their vertices are
-//! looked at, and where they have moved less, the facets are kept. The search covers regions of the skins,
-//! which are searched again when the bodies may have moved a few spacings.
+//! Bounds of the speeds of the bodies say when the skins may have moved so far. Then the displacements of
+//! their vertices are evaluated, and where they are smaller, the facets are kept. The search covers regions
+//! of the skins, which are searched again when the bodies may have moved a few spacings.
 
 use glam::DVec3;
 

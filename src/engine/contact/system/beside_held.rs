@@ -1,5 +1,5 @@
-//! Contact that reaches a side held along its normal alone: the stress beside the edge is off there, as under
-//! a load.
+//! Warning of contact that reaches a side held along its normal alone: the stress beside the edge is wrong
+//! there, as under a load.
 
 use crate::plugin::{BodyPlan, HeldSide};
 use crate::schedule::Step;

@@ -1,11 +1,11 @@
-//! Bodies that can fail touch with their skins for as long as all that carries these is whole, and with their
-//! particles from then on.
+//! Bodies that can fail have contact through their skins as long as all particles that carry these are
+//! intact, and from then on through their particles.
 //!
-//! The step in which a first particle of a skin fails computes both, for the same places. Particles stick out
-//! of a body that is squeezed along its surface, because those of a body that can fail stay spheres: with all
-//! of their overlaps they would hold more than the skin did, and make motion out of nothing. They therefore
-//! begin with a part of their overlaps, the one for which they hold what the skin held. The forces are
-//! theirs, and what is left of the difference goes to the account `contact_surface`.
+//! The step in which the first particle of a skin fails computes both, at the same positions. Particles
+//! protrude from a body that is compressed along its surface, because those of a body that can fail stay
+//! spheres: with their full overlaps they would store more energy than the skin did, and supply spurious
+//! energy. They therefore start with reduced overlaps, for which they store the energy of the skin. The
+//! forces are those of the particles, and the remaining difference goes to the account `contact_surface`.
 
 use std::sync::Arc;
 

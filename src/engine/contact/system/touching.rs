@@ -1,4 +1,4 @@
-//! Two bodies that touch.
+//! A pair of bodies with a contact.
 
 use crate::contact::active::ContactNodes;
 use crate::contact::bodies::{MemberParticles, MotionBounds, NodeTurn};

@@ -1,4 +1,4 @@
-//! Springs of contacts that are loaded at the start give their energy to the motion.
+//! The energy of contact springs that are loaded at the start becomes kinetic energy.
 
 use super::simulation;
 

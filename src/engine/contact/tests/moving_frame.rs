@@ -1,4 +1,4 @@
-//! The same meeting in frames that move: its course and its steps are the same.
+//! Galilean invariance: the same collision in moving frames has the same motion and the same steps.
 
 use glam::DVec3;
 

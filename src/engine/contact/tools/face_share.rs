@@ -1,10 +1,10 @@
-//! How much a point of a face counts near the end of the face that it touches.
+//! The weight of a point of a face near the edge of the face that it touches.
 //!
-//! Faces touch with all of their points. As a body slides over the points of another one, they come under its
-//! face at its ends, where they are as deep as the bodies overlap: a spring that began there would have its
-//! energy from nowhere, and a box that hopped on another one without friction gained a quarter of its energy
-//! in two seconds. So the energy of a point of a face is `w u(d)`, where w grows from zero at the end of the
-//! other face to one at a distance D from it,
+//! All points of a face are in contact. As a body slides over the points of another one, they enter below its
+//! face at an edge, already at the depth of the overlap: a spring that began there would have spurious
+//! energy, and a frictionless box that bounced on another one gained a quarter of its energy in two seconds.
+//! So the energy of a point of a face is `w u(d)`, where w grows from zero at the edge of the other face to
+//! one at a distance D from it,
 //!
 //! ```text
 //! w = -s(p - D n) / D,      D = 0.4 of the length that the point stands for

@@ -1,20 +1,20 @@
-//! Dashpots that move rigid bodies together.
+//! Dashpots of several contacts of one rigid body.
 //!
-//! A dashpot is as strong as its spring and the mass that it moves require. The points of a flat face move
-//! one mass together: if each took it for its own, a block on n of them would be damped sqrt(n) times as much
-//! as a linear oscillator of that restitution, and thrown away where that is more than a step can bear. So a
-//! contact counts as if it moved `1/w_i` over its share,
+//! The coefficient of a dashpot follows from its spring and the mass that it moves. The points of a flat face
+//! move one mass together: with the whole mass for each, a block on n of them would be damped sqrt(n) times
+//! as much as a linear oscillator of that restitution, and the step would be unstable for large n. So the
+//! mass of a contact is `1/w_i` over its share,
 //!
 //! ```text
 //! share_i = n_i . (response at i to all forces k_j n_j) / (k_i w_i)        k = stiffness, n = normal, w = inverse mass along it
 //! ```
 //!
-//! which is one for a contact alone, and n for n equal ones. The dashpots of a face then are together that of
-//! its springs, and act on the velocity that all of them leave.
+//! which is one for a single contact, and n for n equal ones. The dashpots of a face together then have the
+//! coefficient that belongs to all of its springs, and act on the velocity that results from all of them.
 //!
-//! The forces are those between the two bodies, of the points of both on the surface of the other, or all
-//! that are on them, whichever moves the contact more: a body may lie on several others side by side, and one
-//! between two others is pushed from both sides.
+//! The response is to the forces between the two bodies (of the points of both on the surface of the other),
+//! or to all contact forces on them, whichever is larger: a body may lie on several others side by side, or
+//! between two others.
 
 use glam::DVec3;
 

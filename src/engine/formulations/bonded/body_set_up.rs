@@ -1,4 +1,4 @@
-//! A body before its bonds are made, and what supports do to it.
+//! A body before its bonds are built, and the effects of supports on it.
 
 use super::pairs::BodyKernel;
 use super::{HeldBody, HeldParticles};

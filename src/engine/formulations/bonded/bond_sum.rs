@@ -1,4 +1,4 @@
-//! Sums over the bonds of a particle of what its neighbours show of their stress.
+//! Sums over the bonds of a particle of the stress records of its neighbours.
 
 use super::bonds::Bonds;
 use crate::parallel::{FourLanes, Lanes4};

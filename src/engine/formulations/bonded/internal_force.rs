@@ -1,15 +1,15 @@
 //! Second pass over pairs: the force of stress and folded terms on every particle.
 //!
 //! `f_i = V_i sum_j V_j w_ij [(A_i + A_j) X_ij + (k_i + k_j) u_ij]` (see [`CorrectedStress`]): swapping i and
-//! j turns the sign of the bracket, so momentum is kept to round-off. The sum is taken as
+//! j changes the sign of the bracket, so that momentum is conserved to round-off. The sum is taken as
 //!
 //! ```text
 //! A_i sum_j V_j w_ij X_ij + k_i sum_j V_j w_ij u_ij          known from the first pass
 //!   + sum_j V_j w_ij q_j - (sum_j V_j w_ij A_j) X_i - (sum_j V_j w_ij k_j) u_i,      q_j = A_j X_j + k_j u_j
 //! ```
 //!
-//! with A and u in the [`AffineFrame`] of the body, so that a neighbour is four products with what stands in
-//! its record, and nothing has to be made from the two ends.
+//! with A and u in the [`AffineFrame`] of the body, so that a neighbour costs four products with the values
+//! of its record, and no quantity depends on both particles.
 
 use std::ops::Range;
 

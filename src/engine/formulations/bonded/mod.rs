@@ -1,11 +1,11 @@
-//! What the Lagrangian formulations of solids share: lists of neighbours of a reference configuration
-//! ("bonds"), with the sums over them.
+//! Shared parts of the Lagrangian formulations of solids: neighbour lists of a reference configuration
+//! ("bonds"), and the sums over them.
 //!
-//! The total-Lagrangian formulation has them of the start, the updated-Lagrangian one of a reference that
-//! follows the body. Here are the bonds with weights and moment matrices, the packed particles, the gathering
-//! of F and the residual, the corrected stress in the frame of a body, cracks, differences of second
-//! derivatives, what held sides do to the particles beside them, the pass of the internal force, and the
-//! pairs for terms of plugins.
+//! In the total-Lagrangian formulation the reference is the initial configuration, in the updated-Lagrangian
+//! one it follows the body. The parts are the bonds with weights and moment matrices, the packed particles,
+//! the sums for F and the residual, the corrected stress in the frame of a body, cracks, differences of
+//! second derivatives, the shares beside held sides, the pass of the internal force, and the pairs for terms
+//! of plugins.
 
 mod balance;
 mod body_set_up;

@@ -4,10 +4,10 @@
 //! U = sum_i xi/4 E_i V_0,i sum_j V_0,j m_ij w_ij [s_ij^2 + q min(E_i, E_j)/E (|e_ij|^2 - s_ij^2)] ,   e_ij = F_i X_ij - x_ij ,   s_ij = e_ij . x_ij / |x_ij| ,   m_ij = min(1, H^2 / |X_ij|^2)^2
 //! ```
 //!
-//! The error along the pair s_ij is what draws particles apart in tension. The rest of the error may count
-//! for a share q: in a twisted body, u = a (-z y, z x, 0), it is all there is, since u . x = 0. It decreases
-//! with the lesser modulus of the pair over Young's modulus E: neighbours slide past each other where either
-//! of them flows.
+//! The residual along the pair, s_ij, is the one that grows in tension. The transverse residual has the
+//! weight q: in a twisted body, u = a (-z y, z x, 0), it is the whole residual, because u . x = 0. Its weight
+//! decreases with the smaller modulus of the pair over Young's modulus E: neighbours slide past each other
+//! where either of them flows.
 //!
 //! F is a state and not a function of the positions. U therefore changes in two ways: by the motion of the
 //! pairs at fixed F, which gives a force on the pair, and by dF/dt = L F, which gives the Kirchhoff stress

@@ -1,4 +1,4 @@
-//! How the force comes from the stress.
+//! The divergence operator: force from stress.
 
 use glam::DMat3;
 use schemars::JsonSchema;

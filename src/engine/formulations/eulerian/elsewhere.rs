@@ -2,8 +2,8 @@
 //!
 //! The deformation of a particle implies the original distance of a pair that is now `x_ij` apart: `|F^-1
 //! x_ij|`. Where the real original distance was much larger, no deformation has brought the two particles
-//! together: two surfaces of the body meet. A pair is in the kernel sums or in contact, never in both and,
-//! within the support, never in neither.
+//! together: two surfaces of the body meet. Within the support, a pair is either in the kernel sums or in
+//! contact.
 
 use glam::{DMat3, DVec3};
 

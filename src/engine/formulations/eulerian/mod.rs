@@ -1,8 +1,8 @@
 //! Solids whose kernels live in the current configuration (Mohseni-Mofidi and Bierwisch 2020), with the
 //! corrections of docs/eulerian.md.
 //!
-//! Neighbours, weights and corrections are evaluated at the current positions; the only memory of a particle
-//! is its state. A step is
+//! Neighbours, weights and corrections are evaluated at the current positions; a particle keeps its state
+//! only. A step is
 //!
 //! ```text
 //! rates     L_i = (sum_j V_0,j w_ij v_ij (x) x_ij) M_i^-1 ,  M_i = sum_j V_0,j w_ij x_ij (x) x_ij      with the positions at mid-step
@@ -16,7 +16,7 @@
 //!
 //! The force is the exact adjoint of the velocity gradient at the same positions: its power is the stress
 //! power, and it has no resultant and no torque. The lists have a skin; a step takes from them the neighbours
-//! within the support, in the order of rows, so that no bit depends on the age of the lists.
+//! within the support, in the order of rows, so that results do not depend on the age of the lists.
 
 mod artificial_stress;
 mod control;

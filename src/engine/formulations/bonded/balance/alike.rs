@@ -1,4 +1,4 @@
-//! Particles beside a side whose surroundings look alike: they carry the same share.
+//! Particles beside a side with equal neighbourhoods: they carry the same share.
 //!
 //! Two particles are alike where distances, volumes and conditions are the same up to a number of neighbours
 //! away: each gets a label from those of its neighbours at their distances, some times over. Far from the

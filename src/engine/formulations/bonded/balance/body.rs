@@ -1,4 +1,4 @@
-//! A body whose shares are found.
+//! A body whose shares are computed.
 
 use crate::kernels::Kernel;
 use crate::plugin::BodyPlan;

@@ -1,5 +1,5 @@
-//! Shares of their stress that particles beside a side carry that is held along its normal, such that a
-//! uniform stress is in balance there.
+//! Beside a side held along its normal, particles carry shares of their stress, for which a uniform stress is
+//! in equilibrium.
 //!
 //! The force of a uniform stress P on particle i is P b_i,
 //!
@@ -9,16 +9,16 @@
 //!
 //! with the share c of its stress and energy that a particle carries, which is the weight of its place in the
 //! integral of the energy. Inside of a lattice b is zero. Beside a held side it is not, as kernels and moment
-//! matrices are cut there: with c = 1 a bar that is drawn evenly has 13 % too much stress in the layer on the
-//! side and 3.5 % too little in the next one at any spacing, and metal that hardens little takes that up in
-//! strain.
+//! matrices are cut there: with c = 1 a uniformly drawn bar has 13 % too much stress in the layer on the side
+//! and 3.5 % too little in the next one at any spacing, and in metal with little hardening this becomes
+//! plastic strain.
 //!
 //! The shares are those nearest to 1 for which n . b_i of the particles beside a held side with the normal n
-//! is zero, where the body is a prism there; elsewhere what it is with the body's mirror image behind the
-//! side. All of b is then on the particles that the condition holds, and its first moment makes the sum of V
-//! c the volume of the body; where the zones of two sides meet, that sum is an equation of its own. Shares do
-//! not change with time, so that forces stay the derivative of an energy. What is left of b is the imbalance,
-//! of which metal is warned.
+//! has its required value: zero where the body is a prism there, elsewhere the value with the body's mirror
+//! image behind the side. All of b is then on the particles that the condition holds, and by its first moment
+//! the sum of V c is the volume of the body; where the zones of two sides meet, that sum is a separate
+//! equation. Shares do not change with time, so that forces stay the derivative of an energy. The remaining b
+//! is the imbalance, of which the program warns for metal.
 //!
 //! Sides that are held along all axes keep c = 1: their stress is not uniform.
 

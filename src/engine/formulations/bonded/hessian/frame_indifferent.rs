@@ -6,9 +6,9 @@
 //!
 //! with the gradient Q since the reference configuration, its pair vectors r_ij, and half of the support
 //! radius h. `2 sum_j V_j w_ij x_ij` is the Laplacian of the positions, `sum_j V_j w_ij (Q_j - Q_i) r_ij` the
-//! divergence of their gradient. Every bond for itself gives nothing for an affine motion, beside a surface
-//! too, and d turns with the body: no direction counts more than another. With p_i = h_i kappa_i d_i / V_i
-//! the force is exactly -dU/dx:
+//! divergence of their gradient. The contribution of every bond vanishes for an affine motion, beside a
+//! surface too, and d rotates with the body: no direction is preferred. With p_i = h_i kappa_i d_i / V_i the
+//! force is exactly -dU/dx:
 //!
 //! ```text
 //! stress  S_i = sum_j V_j w_ij (p_j - p_i) (x) r_ij / 2      beside that of the material
