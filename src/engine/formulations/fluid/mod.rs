@@ -6,7 +6,7 @@
 //! boundaries are packed into one cloud with one search for neighbours; every pair force has its exact
 //! opposite on the other particle.
 //!
-//! Folders stand in the order in which they use each other, and import only those above them.
+//! The folders are listed in the order of their dependencies, and import only those above them.
 
 /// What the passes over neighbours read, and do for four of them at once.
 mod lanes;

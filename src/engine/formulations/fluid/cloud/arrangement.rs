@@ -1,4 +1,4 @@
-//! How the neighbours of a particle are arranged: their moment matrix and their first moment.
+//! Arrangement of the neighbours of a particle: moment matrix and first moment.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! Where boundaries that move against each other meet: what their particles there do to the fluid.
+//! Edges between boundaries that move relative to each other: the effect of their particles on the fluid.
 
 use glam::{DMat3, DVec3};
 

@@ -1,4 +1,4 @@
-//! The bodies of a flow, and what they are to it.
+//! The bodies of a flow, and their roles in it.
 
 use std::ops::Range;
 

@@ -1,5 +1,5 @@
-//! Loads on a flow beside gravity, such as a `BodyForce`: the pressure of walls rises along them as it does
-//! along gravity.
+//! Loads on a flow beside gravity, such as a `BodyForce`: the pressure of walls increases along them as along
+//! gravity.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! The particles beside each in the body of a boundary, and how they move around it.
+//! The neighbours of each boundary particle within its body, and their relative motion.
 
 use glam::{DMat3, DVec3};
 

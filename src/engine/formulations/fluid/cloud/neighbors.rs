@@ -1,4 +1,4 @@
-//! The system that keeps the neighbour lists, and packs the particles for the passes.
+//! The system that maintains the neighbour lists, and packs the particles for the passes.
 
 use glam::DVec3;
 

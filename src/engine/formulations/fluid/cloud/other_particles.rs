@@ -1,4 +1,4 @@
-//! Which particles of other ranks this one knows.
+//! The particles of other ranks of which this one has current values.
 
 use crate::ranks::Halo;
 

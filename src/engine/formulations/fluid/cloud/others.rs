@@ -1,9 +1,9 @@
-//! What this rank knows of the particles that other ranks compute.
+//! Particles computed by other ranks, as far as this rank has their values.
 //!
-//! The loops of most flows need what is near their own particles, and ranks exchange no more than that. Who
-//! looks at particles elsewhere, as probes and warnings do, asks for the [whole cloud](FlowCloud::whole)
-//! first. Where bodies are moved by the flow, or boundaries do more than to bound it, all ranks have all
-//! particles in every step.
+//! The loops of most flows need only the particles near those of the rank, and ranks exchange no more than
+//! that. Probes, warnings and others that read particles elsewhere request the [whole
+//! cloud](FlowCloud::whole) first. In flows that move bodies, or whose boundaries have more than a pressure,
+//! all ranks have all particles in every step.
 
 use std::cell::Ref;
 use std::ops::Range;

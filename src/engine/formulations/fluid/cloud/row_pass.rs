@@ -1,4 +1,4 @@
-//! Sums over the neighbours of every particle: what plugins look at a flow with.
+//! Sums over the neighbours of every particle, as plugins and fields define them.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! Names of what the systems of a flow share beside columns, for their declared access.
+//! Names of the data, other than columns, that the systems of a flow share, for their declared access.
 
 use super::flow_cloud::FlowCloud;
 use crate::schedule::Shareable;

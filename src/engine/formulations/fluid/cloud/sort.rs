@@ -2,7 +2,7 @@
 //! while the fluid mixes.
 //!
 //! Rows of a body are permuted within the body, in all columns; [`ParticleId`](crate::world::ParticleId)
-//! tells who is who. A body whose particles a selection holds by their rows keeps its order.
+//! identifies the particles. A body whose rows a selection refers to keeps its order.
 
 use glam::DVec3;
 

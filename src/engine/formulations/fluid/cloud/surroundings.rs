@@ -1,4 +1,4 @@
-//! How much of what surrounds a fluid particle is filled.
+//! The filled share of the support of a fluid particle.
 
 use crate::linalg::{Eigen, Sym3};
 

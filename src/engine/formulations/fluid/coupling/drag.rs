@@ -1,14 +1,14 @@
 //! Friction of a flow on bodies that take sub-steps follows their motion within the long one.
 //!
-//! Friction that is frozen in the long step lags: a part of the body that swings there and back within some
-//! steps of the flow is pushed on by what should slow it down. So the sub-steps add what the friction changes
-//! by the motion of the body, with frozen weights:
+//! Friction that is frozen in the long step lags: it drives a part of the body that oscillates within some
+//! steps of the flow, instead of damping it. So the sub-steps add the change of the friction by the motion of
+//! the body, with frozen weights:
 //!
 //! `f_w = f_w(n) - c_w (v_w - v_w(n))`, with v_w(n) the velocity that f_w(n) was computed with, and `c_w = 2
 //! sum_f V_w V_f 4 mu w_wf`.
 //!
-//! At the end of the long step the body gets what it lacks of dt/2 (f(n) + f(n+1)), as the fluid has:
-//! momentum is kept.
+//! At the end of the long step the body receives the rest of dt/2 (f(n) + f(n+1)), the impulse of the fluid:
+//! momentum is conserved.
 
 use std::ops::Range;
 

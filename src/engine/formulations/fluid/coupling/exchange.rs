@@ -1,4 +1,4 @@
-//! What passes between a flow and bodies that take sub-steps beside it.
+//! Force, impulse and motion exchanged between a flow and bodies that take sub-steps beside it.
 
 use crate::formulations::fluid::cloud::PARTS;
 use crate::parallel::BlockSum;

@@ -1,10 +1,10 @@
 //! The force of a flow on bodies that take sub-steps.
 //!
-//! It is frozen in the long step: the sub-steps run with what the flow did at its start, f(n). At its end the
-//! change comes as an impulse, dt/2 (f(n+1) - f(n)), so that the body has got dt/2 (f(n) + f(n+1)), exactly
-//! the opposite of what the kicks of the fluid were. The fluid sees the mean velocity of the long step, on
+//! It is frozen in the long step: the sub-steps use the force at its start, f(n). At its end the change is
+//! applied as an impulse, dt/2 (f(n+1) - f(n)), so that the body has received dt/2 (f(n) + f(n+1)), exactly
+//! the opposite of the kicks of the fluid. The fluid has the mean velocity of the body in the long step, on
 //! which the frozen force does its work. With one sub-step in the long one this is the leapfrog, and under a
-//! constant force nothing kicks at all.
+//! constant force the impulse is zero.
 
 use glam::DVec3;
 

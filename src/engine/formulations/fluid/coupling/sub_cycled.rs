@@ -1,4 +1,4 @@
-//! Bodies that take sub-steps beside a fluid do not ring at what its frozen force feeds.
+//! Damping of bodies that take sub-steps beside a fluid, against vibrations driven by its frozen force.
 
 use crate::materials::Law;
 use crate::plugin::{BodyKind, SimBuilder};

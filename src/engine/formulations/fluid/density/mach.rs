@@ -1,8 +1,8 @@
-//! Mach number of a flow: whether the fluid still is as good as incompressible.
+//! Mach number of a flow: whether the fluid is still nearly incompressible.
 //!
-//! A tank that moves as a whole with its fluid compresses nothing. The speed that counts is that against the
-//! frame in which the fastest of all that flows and bounds a flow is slowest: at rest, or with one of the
-//! bodies that bound the flow, or, where nothing bounds it, with the mean of what flows.
+//! A tank that moves as a whole with its fluid compresses nothing. Speeds count relative to one of several
+//! frames: at rest, that of one of the boundary bodies, or, without boundaries, that of the mean velocity of
+//! the fluids. The frame is the one in which the largest speed of fluids and boundaries is smallest.
 
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;

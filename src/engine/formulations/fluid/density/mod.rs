@@ -1,4 +1,4 @@
-//! Density and pressure of fluids, and how fast they flow for their sound.
+//! Density, pressure and Mach number of fluids.
 
 mod continuity;
 

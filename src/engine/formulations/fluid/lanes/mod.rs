@@ -1,4 +1,4 @@
-//! What the passes over neighbours read, and do for four of them at once.
+//! Records and arithmetic of the passes over neighbours, for four of them at once.
 
 mod record;
 

@@ -1,4 +1,5 @@
-//! What the passes over pairs read per particle: one cache line, packed from the columns in every step.
+//! The record that the passes over pairs read per particle: one cache line, packed from the columns in every
+//! step.
 
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;

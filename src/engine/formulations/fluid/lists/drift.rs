@@ -1,9 +1,10 @@
-//! How far particles have moved against those around them since the lists were built.
+//! Bound of the relative displacement of neighbouring particles since the lists were built.
 //!
-//! A list is good as long as no pair beyond its skin has come within the support. That is a matter of how
-//! neighbours move against each other: a jet that flies carries its list along. Space is cut into cells; what
-//! the particles of a cell have moved lies in a box, and the boxes of a cell and those beside it hold all
-//! neighbours. Particles of cells that do not touch were the length of a cell apart.
+//! A list is valid as long as no pair beyond its skin has come within the support. Only relative
+//! displacements of neighbours count, so that a uniform motion, as of a jet, does not use up the skin. Space
+//! is divided into cells; the displacements of the particles of a cell lie in a box, and the boxes of a cell
+//! and of its adjacent cells contain those of all neighbours. Particles of cells that are not adjacent were
+//! at least the length of a cell apart.
 
 use std::ops::Range;
 

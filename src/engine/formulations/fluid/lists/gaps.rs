@@ -1,7 +1,7 @@
 //! Particles of bodies that are beside other bodies or walls: no particle of a fluid may fit between the two.
 //!
 //! Their lists hold all boundary particles around them, those of their own body too. They are built with the
-//! lists of the flow, and are good for as long as these.
+//! lists of the flow, and are valid as long as these.
 
 use std::cmp::Ordering;
 use std::ops::Range;

@@ -1,4 +1,4 @@
-//! Who is near whom: lists of neighbours, how long they are good for, and what thin bodies hide.
+//! Neighbour lists, their validity, and pairs hidden by thin bodies.
 
 mod spread;
 

@@ -1,7 +1,7 @@
-//! The neighbours within the support, taken out of the lists in every step.
+//! The neighbours within the support, selected from the lists in every step.
 //!
-//! A third of the pairs of a list is in its skin only. The first pass over a list has the distances in its
-//! hands: it writes down who is near, and the passes after it leave out the rest.
+//! A third of the pairs of a list is in its skin only. The first pass over a list computes the distances and
+//! records the neighbours within the support; later passes leave out the rest.
 
 use std::ops::Range;
 

@@ -1,11 +1,11 @@
-//! Bodies that are somewhere thinner than the support of the fluid: the two sides of each do not see each
-//! other there.
+//! Bodies that are somewhere thinner than the support of the fluid: fluid particles on their two sides do not
+//! interact there.
 //!
 //! Such a body is in the cloud twice, once for each side, with a pressure of its own for either. A fluid
-//! particle sees the copy on whose side it is, the whole thickness of it; which side that is, the sign of n_j
-//! . x_ji says, with the normal n_j of the body as it is bent now. Pairs of fluid particles through the body
-//! are left out. Both are decided where the lists are built, in the same way for i and j, so that every force
-//! keeps its opposite.
+//! particle interacts with the copy of its side, with the whole thickness of the body. The side follows from
+//! the sign of n_j . x_ji, with the current normal n_j of the deformed body. Pairs of fluid particles through
+//! the body are left out. Both are decided where the lists are built, in the same way for i and j, so that
+//! every force keeps its opposite.
 
 use std::collections::BinaryHeap;
 use std::ops::Range;

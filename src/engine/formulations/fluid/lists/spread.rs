@@ -1,4 +1,4 @@
-//! How much displacements differ: the box around them.
+//! Bounds of displacements: the box around them.
 
 use bytemuck::{Pod, Zeroable};
 

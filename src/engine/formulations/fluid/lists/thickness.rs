@@ -1,4 +1,4 @@
-//! How thick bodies are beside a fluid.
+//! Thickness of bodies beside a fluid.
 
 use glam::{DMat3, DVec3};
 

@@ -1,8 +1,8 @@
-//! Forces on the particles around one that have a given first moment and no sum.
+//! Forces on the particles around one, with a given first moment and zero resultant.
 //!
-//! A particle has no moment of its own. A moment M_w is made of forces `V_k B_w (x_k - x_mean)` on the
+//! A point particle cannot carry a moment. A moment M_w is applied as forces `V_k B_w (x_k - x_mean)` on the
 //! particles k of its cluster, with B_w such that they add up to M_w and to no force
-//! ([`affine`](crate::formulations::fluid::rotation)). What they do is `M_w : L_w` with the gradient L_w of
+//! ([`affine`](crate::formulations::fluid::rotation)). Their power is `M_w : L_w` with the gradient L_w of
 //! the motion of the cluster by the same B.
 
 use glam::{DMat3, DVec3};

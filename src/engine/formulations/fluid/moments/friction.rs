@@ -1,12 +1,11 @@
-//! Where the friction on boundary particles acts.
+//! The point of action of friction on boundary particles.
 //!
-//! The force of a pair across a surface acts in the middle of the pair: there, half of the couple `x_ij x
-//! f_ij` is that of the fluid, whose spin has it in its balance. On the boundary it acts on a particle below
-//! the surface, so that its first moment `M_w = 1/2 sum_f f_wf (x) x_wf` is missing: the couple would turn
-//! the boundary too little, and a soft body would be sheared from below its surface. [`ClusterForces`] make
-//! it.
+//! The force of a pair across a surface acts at the midpoint of the pair: half of the couple `x_ij x f_ij`
+//! then acts on the fluid, where the spin balances it. On the boundary the force acts on a particle below the
+//! surface, so that its first moment `M_w = 1/2 sum_f f_wf (x) x_wf` is missing: the torque on the boundary
+//! would be too small, and a soft body would be sheared from below its surface. [`ClusterForces`] apply it.
 //!
-//! The velocity of the surface in the middle of a pair follows from the motion of the cluster: the work of
+//! The velocity of the surface at the midpoint of a pair follows from the motion of the cluster: the work of
 //! these forces is that of friction there.
 
 use std::ops::Range;

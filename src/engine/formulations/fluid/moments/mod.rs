@@ -1,4 +1,4 @@
-//! Where the forces of a flow on boundaries act: at their surface, not at the particles below it.
+//! The forces of a flow act at the surface of boundaries, and not at the particles below it.
 
 mod cluster_forces;
 

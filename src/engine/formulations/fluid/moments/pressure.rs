@@ -1,16 +1,16 @@
-//! Where the pressure on deformable bodies acts.
+//! The point of action of the pressure on deformable bodies.
 //!
-//! The pressure force of a pair across a surface acts on a particle below it. In the middle of the pair,
-//! where the surface is in the mean, half of its moment is that of the fluid; the other half,
+//! The pressure force of a pair across a surface acts on a particle below it. Taken at the midpoint of the
+//! pair, which on average lies on the surface, half of its moment belongs to the fluid; the other half,
 //!
 //! `M_w = 1/2 sum_f f_wf (x) x_wf = -1/2 V_w sum_f V_f (p_w + p_f) w_wf x_wf (x) x_wf`
 //!
-//! is that of the body, and without it a body at the pressure p would be compressed by less. With it the
-//! virial of all forces is -p times the volume of its particles, whatever its shape is: where `sum_j V_j w_ij
-//! x_ij` is zero and `sum_j V_j w_ij x_ij (x) x_ij` is the unit matrix around every particle of the body, it
-//! follows by summation over pairs.
+//! belongs to the body, and without it a body under the pressure p would be compressed too little. With it
+//! the virial of all forces is -p times the volume of its particles, whatever its shape is: where `sum_j V_j
+//! w_ij x_ij` is zero and `sum_j V_j w_ij x_ij (x) x_ij` is the unit matrix around every particle of the
+//! body, it follows by summation over pairs.
 //!
-//! The fluid sees the surface stretch by the same moments ([`stretching`](super::stretching)).
+//! The rate of compression of the fluid has the adjoint term ([`stretching`](super::stretching)).
 
 use std::ops::Range;
 

@@ -1,16 +1,17 @@
-//! How a fluid sees the surface of a deformable body move.
+//! The motion of the surface of a deformable body in the rate of compression of the fluid.
 //!
-//! The pressure on a body acts in the middle of each pair ([`pressure`](super::pressure)). There the body
+//! The pressure on a body acts at the midpoint of each pair ([`pressure`](super::pressure)). There the body
 //! moves at `v_w - 1/2 L_w x_iw`, with the gradient L_w of the motion of the cluster, so that the rate of
 //! compression of fluid particle i is less by
 //!
 //! `1/2 sum_w V_w w_iw x_iw . L_w x_iw`:
 //!
-//! what the pressure of the fluid does to the body is what the fluid loses, and the volume that a body gives
-//! up is that of its particles. A body that turns changes nothing.
+//! the work of the pressure on the body is the energy that the fluid loses, and the volume change of a body
+//! is that of its particles. A rotation of the body has no effect.
 //!
-//! The pressure of the body acts in the same places, so that the rate beside it, which the fluid follows too
-//! (`walls::wall_compression`), is less by as much: `1/2 sum_f V_f w_wf x_wf . L_w x_wf`.
+//! The pressure of the body acts at the same points, so that the rate of compression at the body, which
+//! enters that of the fluid too (`walls::wall_compression`), is reduced likewise: `1/2 sum_f V_f w_wf x_wf .
+//! L_w x_wf`.
 
 use std::ops::Range;
 

@@ -1,8 +1,8 @@
-//! First pass over pairs: who is within the support, and the rate of compression.
+//! First pass over pairs: the neighbours within the support, and the rate of compression.
 //!
 //! `D_i = sum_j V_j w_ij v_ij.x_ij` at the middle of the step, so that `drho_i/dt = -rho_i D_i`. With x at
-//! the end of the step and v at its middle, the pair vectors at the middle are `x_ij - dt/2 v_ij`. Who is
-//! near is decided at the end of the step.
+//! the end of the step and v at its middle, the pair vectors at the middle are `x_ij - dt/2 v_ij`. The
+//! neighbours are those at the end of the step.
 
 use crate::formulations::fluid::cloud::FlowCloud;
 use crate::formulations::fluid::lanes::{

@@ -1,5 +1,5 @@
-//! The force of a flow on the particles of one body, by the pass that goes in blocks or by the one that does
-//! not.
+//! The force of a flow on the particles of one body, by the pass in blocks or by the pass over single
+//! particles.
 
 use glam::DVec3;
 

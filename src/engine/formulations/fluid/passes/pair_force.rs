@@ -2,12 +2,12 @@
 //!
 //! `f_i = -V_i sum_j V_j (p_i + p_j) w_ij x_ij + V_i sum_j V_j 4 mu_ij w_ij (v_ij - omega_ij x x_ij)`, with
 //! the harmonic mean mu_ij of the two viscosities and the mean omega_ij of the two spins (`rotation`), that
-//! of the fluid at a wall. Swapping i and j turns the sign of every product. Where friction goes without
-//! spins it is `2 mu_ij w_ij v_ij`.
+//! of the fluid at a wall. Swapping i and j changes the sign of every product. Friction without spins is `2
+//! mu_ij w_ij v_ij`.
 //!
-//! The part of the pressure force that a boundary's own pressure makes is kept apart: the energy of a
-//! boundary is not that of a compressed fluid, so its work is booked by itself, together with that of its
-//! repulsion (`walls::repulsion`).
+//! The part of the pressure force that comes from the pressure of a boundary is summed separately: the energy
+//! of a boundary is not that of a compressed fluid, so that its work has an account of its own, together with
+//! that of the repulsion (`walls::repulsion`).
 
 use glam::DVec3;
 

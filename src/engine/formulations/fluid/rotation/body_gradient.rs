@@ -1,4 +1,4 @@
-//! How boundary particles move around each other in their body.
+//! Velocity gradient of a boundary body at its particles.
 
 use glam::{DMat3, DVec3};
 

@@ -1,4 +1,4 @@
-//! How a flow turns around each particle, which friction must not feel, and how a boundary moves beside it.
+//! The local rotation of a flow, which must not cause friction, and the velocity gradient of boundaries.
 
 mod affine;
 

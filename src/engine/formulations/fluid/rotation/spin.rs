@@ -1,4 +1,4 @@
-//! The spin of fluid particles, which friction must not feel.
+//! The spin of fluid particles: their local rotation, which must not cause friction.
 //!
 //! The rotation that fits the motion around a particle best, with the weights of friction, is
 //!
@@ -10,12 +10,12 @@
 //! `J_i (omega_i - w_i) = 1/2 sum_j c_ij (r_ij^2 I - x_ij (x) x_ij) (w_i - w_j)` over fluids.
 //!
 //! Between fluids it is the derivative by the velocities of the power `2 sum_ij V_i c_ij |v_ij - (w_i +
-//! w_j)/2 x x_ij|^2` of all pairs: it takes energy out whatever the velocities are, and keeps momentum and
-//! angular momentum to round-off, at free surfaces as well. Inside it is div(2 mu D) = mu (lap v + grad div
-//! v), and at a free surface 2 mu D n is zero by nature. The second term sharpens what the fit has smoothed:
-//! without it waves of number k decay by (k h)^2 / 7 too fast, with it the error on a lattice is of fourth
-//! order. With omega_i = 0 and half of the factor it is the friction of Morris, Fox, Zhu (J. Comput. Phys.
-//! 136 (1997) 214-226), whose stress mu grad v feels a rigid rotation.
+//! w_j)/2 x x_ij|^2` of all pairs: it is dissipative for all velocities, and conserves momentum and angular
+//! momentum to round-off, at free surfaces as well. Inside it is div(2 mu D) = mu (lap v + grad div v), and
+//! at a free surface 2 mu D n is zero by nature. The second term sharpens what the fit has smoothed: without
+//! it waves of number k decay by (k h)^2 / 7 too fast, with it the error on a lattice is of fourth order.
+//! With omega_i = 0 and half of the factor it is the friction of Morris, Fox, Zhu (J. Comput. Phys. 136
+//! (1997) 214-226), whose stress mu grad v is not zero in a rigid rotation.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! What can be known of a flow before it runs, and is most likely not meant.
+//! Notes before a run: properties of a flow that are most likely not intended.
 
 use glam::DVec3;
 

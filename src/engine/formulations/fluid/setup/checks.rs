@@ -1,4 +1,4 @@
-//! What must hold between fluids and walls before anything runs.
+//! Checks of fluids and walls before a run.
 
 use glam::DVec3;
 

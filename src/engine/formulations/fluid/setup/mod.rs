@@ -1,4 +1,4 @@
-//! The start of a flow: its state, and what must hold before anything runs.
+//! The start of a flow: initial state, checks and notes.
 
 mod sound_speed;
 

@@ -1,9 +1,9 @@
-//! Pressure of fluids at rest under gravity, below whatever surface they have.
+//! Hydrostatic pressure of fluids at rest under gravity, below a surface of any shape.
 //!
-//! A line from each particle against gravity, through its fluid and those that lie on it, ends at a free
-//! surface: `p = sum_k rho_k g l_k` with the lengths l_k in each fluid. Where a wall or a body ends it,
-//! pressure goes on from the particles beside that have one, along gravity as in a fluid at rest; a fluid
-//! without any free surface has none at its highest point.
+//! A line from each particle against gravity, through its fluid and the fluids above it, ends at a free
+//! surface: `p = sum_k rho_k g l_k` with the lengths l_k in each fluid. Where the line ends at a wall or a
+//! body, the pressure is continued hydrostatically from neighbouring particles that have one; in a fluid
+//! without a free surface it is zero at the highest point.
 
 use glam::DVec3;
 use rayon::prelude::*;

@@ -1,4 +1,4 @@
-//! The speed of sound of fluids that do not give one.
+//! The default speed of sound of fluids.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! The state of fluids before the first step: pressure, density, and the mass that fills their place.
+//! Initial state of fluids: pressure, density, and mass of the particles.
 
 use super::checks;
 use crate::formulations::fluid::cloud::{FlowCloud, Group};

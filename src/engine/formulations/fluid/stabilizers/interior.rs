@@ -1,4 +1,4 @@
-//! Particles that no free surface is near: what a stabilizer may act on.
+//! Particles away from free surfaces, on which a stabilizer may act.
 
 use crate::formulations::fluid::cloud::FlowCloud;
 

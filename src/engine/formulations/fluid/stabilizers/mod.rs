@@ -1,5 +1,5 @@
-//! What plugins that stabilize a flow do to it: they act away from free surfaces, move particles, and pay
-//! energy back.
+//! Support for plugins that stabilize a flow: detection of the interior, displacement of particles,
+//! compensation of energy.
 
 mod displace;
 

@@ -1,4 +1,4 @@
-//! Friction that pays energy back: what a stabilizer without an energy of its own has given to a flow,
+//! Friction that compensates energy: the energy that a stabilizer without a potential has supplied to a flow,
 //! neighbours lose.
 
 use std::ops::Range;

@@ -1,4 +1,4 @@
-//! Loads on a flow beside gravity: walls feel what the fluid feels.
+//! Loads on a flow beside gravity: the pressure of walls includes them.
 
 use glam::DVec3;
 

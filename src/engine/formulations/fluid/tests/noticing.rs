@@ -1,4 +1,4 @@
-//! Flows that go wrong, and what the run says of them.
+//! Flows that go wrong, and the warnings of the run.
 
 use super::simulation;
 use crate::assembly::build;

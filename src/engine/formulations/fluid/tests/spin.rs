@@ -1,4 +1,4 @@
-//! Friction and rotation: nothing turns by itself, and what turns together does not rub.
+//! Friction and rotation: no spontaneous rotation, and no friction in a rigid rotation.
 
 use super::{column, double, simulation};
 use crate::simulation::Simulation;

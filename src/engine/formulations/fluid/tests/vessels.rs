@@ -1,4 +1,4 @@
-//! Fluids between walls that pull, without a free surface: what is done to them is what they feel.
+//! Fluids between walls with suction, without a free surface: the work on them is their change of energy.
 
 use std::f64::consts::PI;
 

@@ -1,5 +1,4 @@
-//! Lists of the blocks that other ranks compute: what is near the box of each, found when somebody asks for
-//! it.
+//! Lists of the blocks that other ranks compute: the particles near the box of each, searched on request.
 
 use super::lists::BlockLists;
 use crate::neighbors::{Boxes, NeighborList, NeighborSearch, Periodic};

@@ -1,7 +1,7 @@
 //! The neighbours that the particles of a block have in common.
 //!
-//! The search finds what is near the box of a block; half of that, where particles are in disorder, is near
-//! none of its particles and left out here.
+//! The search finds the particles near the box of a block; where particles are in disorder, half of them are
+//! near none of its particles and left out here.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! Blocks of eight fluid particles: their neighbours in common, and what single precision knows of each.
+//! Blocks of eight fluid particles: their common neighbours, and their records in single precision.
 
 mod table;
 

@@ -1,7 +1,7 @@
 //! The blocks that other ranks compute.
 //!
-//! Loops that are divided among ranks need the lists of their own blocks. Whoever looks at particles one by
-//! one, as probes do, may ask for any.
+//! Loops that are divided among ranks need the lists of their own blocks. Reads of single particles, as by
+//! probes, may need the lists of any block.
 
 use std::ops::Range;
 use std::sync::OnceLock;

@@ -1,8 +1,8 @@
-//! What the passes of blocks read per particle: 32 bytes, packed from the records in every step.
+//! The record that the passes in blocks read per particle: 32 bytes, packed from the records in every step.
 //!
-//! Places are whole numbers of a unit of at most 2^-24 spacings that go round at the ends of their range: a
-//! difference is exact, and exactly the opposite of that from the other side. A period is a whole multiple of
-//! 2^32 units, so that differences are those of the nearest images.
+//! Positions are whole multiples of a unit of at most 2^-24 spacings, with wrap-around arithmetic:
+//! differences are exact, and x_ij is exactly -x_ji. A period is a whole multiple of 2^32 units, so that
+//! differences are those of the nearest images.
 
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;

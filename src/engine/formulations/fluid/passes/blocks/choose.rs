@@ -1,4 +1,4 @@
-//! Whether the passes over pairs go in blocks: where they can, unless the scene says otherwise.
+//! Whether the passes over pairs run in blocks: where they can, unless the scene says otherwise.
 
 use crate::formulations::fluid::lists::blocks::{Blocks, Units};
 use crate::notation::number;

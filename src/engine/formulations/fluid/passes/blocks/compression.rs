@@ -1,4 +1,4 @@
-//! First pass over pairs, in blocks: who is within the support, and the rate of compression
+//! First pass over pairs, in blocks: the neighbours within the support, and the rate of compression
 //! (`passes::compression`).
 
 use std::ops::Range;

@@ -2,8 +2,8 @@
 //!
 //! Some neighbours are taken at a time: one loop adds the forces of the flow and leaves the geometry of the
 //! pairs in the first-level cache for those of the terms of plugins, one each. So the sums of every loop stay
-//! in registers. Products of volumes, and sums of pressures, are the same from both sides of a pair, and
-//! differences exact opposites: so is the force.
+//! in registers. Products of volumes and sums of pressures are the same from both sides of a pair, and
+//! differences are exact opposites: so the forces are exact opposites.
 
 use glam::DVec3;
 

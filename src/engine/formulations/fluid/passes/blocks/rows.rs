@@ -1,5 +1,5 @@
-//! The neighbours of every fluid particle, taken out of those of its block: for those who look at one
-//! particle at a time where not all see what is near them.
+//! The neighbours of every fluid particle, selected from those of its block: for passes over single particles
+//! where thin bodies hide neighbours.
 
 use crate::formulations::fluid::cloud::FlowCloud;
 use crate::formulations::fluid::lists::NearWriter;
