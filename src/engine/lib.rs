@@ -1,7 +1,7 @@
 //! The engine of `meshless`: particles are hecs entities with component columns, systems run in stages.
 //!
-//! The data flow is scene -> world -> schedule -> systems -> recording. Imports between the modules go down
-//! one list, which a test holds them to (`LAYERS` in `tests/architecture/imports.rs`).
+//! The data flow is scene -> world -> schedule -> systems -> recording. A module imports only from modules
+//! below it in one list, which a test checks (`LAYERS` in `tests/architecture/imports.rs`).
 //!
 //! Conventions that hold everywhere: SI units, three-dimensional vectors (a two-dimensional scene is plane
 //! strain in x-y with z = 0), pair vectors point from i to j, `x_ij = x_j - x_i`, and the pair weight is

@@ -1,6 +1,6 @@
-//! What holds exactly of every formulation of solids and every stabilizer, for their tests: an affine map has
-//! its deformation gradient, forces are the slope of the stored energy and have neither a sum nor a torque,
-//! and a body that is thrown keeps its momenta.
+//! Exact properties of every formulation of solids and every stabilizer, for their tests: an affine map has
+//! its deformation gradient, forces are the gradient of the stored energy with zero resultant and torque, and
+//! a thrown body conserves momentum and angular momentum.
 //!
 //! The formulation is a parameter: [`Specimen::new`] takes whatever makes a simulation whose first body is
 //! the specimen, irregular as a rule.

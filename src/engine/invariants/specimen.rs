@@ -1,4 +1,4 @@
-//! A body that is moved by hand, and its forces.
+//! A body with given positions, and its forces.
 
 use glam::{DMat3, DVec3};
 

@@ -1,4 +1,4 @@
-//! The invariants of every formulation of solids, without stabilizers; a new formulation is a word in the
+//! The invariants of every formulation of solids, without stabilizers; a new formulation is added to the
 //! list.
 
 use std::error::Error;

@@ -1,4 +1,4 @@
-//! Pressure of a fluid as a function of its density, and what else its stress depends on.
+//! Pressure of a fluid as a function of its density, and its viscosity.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

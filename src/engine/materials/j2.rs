@@ -3,12 +3,12 @@
 //! The trial state is be = F Cp^-1 F^T with Cp^-1 of the step before; its logarithm splits into the volume,
 //! ln J, and the deviator e. The Kirchhoff stress is tau = 2 mu e - J p I. Where its equivalent stress q =
 //! sqrt(3/2) |2 mu e| is above the flow stress, e is scaled back by the plastic increment, and Cp^-1 = F^-1
-//! be F^-T keeps what is left (Simo and Hughes 1998, section 9.3). Everything is three-dimensional: in plane
-//! strain the plastic flow out of the plane is kept.
+//! be F^-T stores the result (Simo and Hughes 1998, section 9.3). Everything is three-dimensional: in plane
+//! strain the plastic strain normal to the plane is included.
 //!
-//! Plastic work is the increment times the mean equivalent stress before and after the step: what the
-//! trapezoidal rule of the leapfrog takes out of the motion where the stress keeps its direction, to second
-//! order of the step elsewhere.
+//! Plastic work is the increment times the mean of the equivalent stresses before and after the step. Where
+//! the stress keeps its direction, this is exactly the energy that the trapezoidal rule of the leapfrog takes
+//! out of the motion; elsewhere it is that to second order in the step.
 
 use glam::DMat3;
 

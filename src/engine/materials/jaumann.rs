@@ -1,8 +1,9 @@
 //! Hypoelastic J2 plasticity with the Jaumann rate of the Cauchy stress.
 //!
 //! S' = 2 mu dev(D) + Omega S - S Omega (Mohseni-Mofidi and Bierwisch 2020, eq. 14), then the radial return.
-//! The step turns the stress by the rotation that Hughes and Winget (1980, Int. J. Numer. Methods Engrg. 15,
-//! 1862-1867) make of the spin, so that rigid rotation is exact for any step, and errors are of second order.
+//! The step rotates the stress by the rotation that Hughes and Winget (1980, Int. J. Numer. Methods Engrg.
+//! 15, 1862-1867) compute from the spin, so that rigid rotation is exact for any step, and errors are of
+//! second order.
 
 use glam::DMat3;
 

@@ -1,5 +1,5 @@
 //! Pair terms: forces that third parties write as a function of one pair, run in one pass over all pairs: a
-//! pass of their own, or that of a formulation which has the geometry of the pairs in its hands.
+//! separate pass, or that of a formulation which computes the geometry of the pairs anyway.
 //!
 //! The pass builds the geometry of some rows once, then calls each term once for all of these through a
 //! vtable, with the pair function inlined in the loop over rows and compiled for four neighbours at a time:

@@ -1,4 +1,4 @@
-//! The pair terms of the bodies of a phase, and what they make.
+//! The pair terms of the bodies of a phase, and their forces and rates.
 
 use std::sync::Arc;
 

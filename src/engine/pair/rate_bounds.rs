@@ -1,4 +1,4 @@
-//! How stiff and how damping the pair terms of a particle are, and the steps that this allows.
+//! Bounds of stiffness and damping of the pair terms of a particle, and the stable step from them.
 
 use bytemuck::{Pod, Zeroable};
 

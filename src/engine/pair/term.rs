@@ -1,4 +1,4 @@
-//! What a pair term is: geometry of one pair and columns of both particles in, rates out.
+//! The trait of a pair term: geometry of one pair and columns of both particles in, rates out.
 
 use glam::DVec3;
 

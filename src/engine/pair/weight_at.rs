@@ -1,4 +1,4 @@
-//! Where the weights of pairs were taken.
+//! The configuration to which the weights of pairs belong.
 
 /// The configuration whose length a pair weight, and a kernel value, was taken at.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

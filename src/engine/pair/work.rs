@@ -1,4 +1,4 @@
-//! The work of pair terms, booked so that the ledger closes as it does without them.
+//! The work of pair terms, booked so that the energy balance closes as it does without them.
 //!
 //! A force f computed at the end of a step acts in the second kick of that step and in the first kick of the
 //! next. Its work is `dt/2 f.(v - a dt/4)` in the one and `dt/2 f.(v + a dt/4)` in the other, exactly, with

@@ -1,6 +1,6 @@
 //! Contributions of plugins while a simulation is built: terms for the formulations of bodies, fields,
-//! recorders, rules of removal. Terms are assigned by body. A term or value that nobody has taken in the end
-//! is an error.
+//! recorders, rules of removal. Terms are assigned by body. A term or value that no formulation or plugin has
+//! accepted is an error.
 
 use std::any::{Any, TypeId, type_name};
 use std::cell::Cell;

@@ -1,4 +1,4 @@
-//! Motion that conditions prescribe, and whether two of them mean the same.
+//! Motion that conditions prescribe, and whether two prescriptions are equal.
 
 use std::fmt;
 use std::sync::Arc;

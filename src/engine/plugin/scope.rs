@@ -1,4 +1,4 @@
-//! The bodies that a plugin acts on, by what they are or what their formulations take.
+//! The bodies that a plugin acts on, selected by their kind or by the offers of their formulations.
 
 use super::builder::SimBuilder;
 use super::error::SetupError;

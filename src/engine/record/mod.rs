@@ -1,7 +1,7 @@
 //! Output of a run and its file formats, for writing and reading.
 //!
-//! The formats know nothing of world or scene: slices go in, files come out. A [`Recorder`] gets the same
-//! slices. [`output`] decides when something is due and where it goes.
+//! The formats are independent of world and scene: they write slices to files. A [`Recorder`] receives the
+//! same slices. [`output`] decides when something is written, and where.
 
 pub mod atomic;
 pub mod container;

@@ -1,4 +1,4 @@
-//! How particles moved that are taken out in this step.
+//! The motion of particles removed in this step.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! What says which particles are taken out of the run.
+//! The rule that selects the particles to remove.
 
 use crate::schedule::{Access, Step, StepError};
 use crate::world::BodyId;

@@ -1,8 +1,8 @@
 //! The faces of a surface that a particle beside a corner or an edge is equally near to.
 //!
-//! Which of them the nearest point of the surface belongs to, round-off decides. A body that took that one
-//! alone had points on one side of a corner or on the other, and a block that landed flat on a floor began to
-//! rock; of a plate of one layer each particle had a point above or below.
+//! Round-off decides to which of them the nearest point of the surface belongs. With that one alone, a body
+//! had points on one side of a corner or on the other, and a block that landed flat on a floor began to rock;
+//! in a plate of one layer each particle had a point either above or below.
 
 use glam::{DQuat, DVec3};
 

@@ -1,7 +1,7 @@
 //! Round outlines: of a disc, ring, ball or shell a sphere, of a cylinder or tube its side.
 //!
-//! A body that rolls must not roll over corners. Where its outline is round it touches with circles, whose
-//! lowest point is known exactly, in the place of points on it.
+//! A body that rolls must not roll over corners. Where its outline is round its contact nodes are circles,
+//! whose lowest point is known exactly, instead of points.
 
 use glam::{DQuat, DVec3};
 

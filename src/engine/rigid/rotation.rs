@@ -1,9 +1,9 @@
 //! Rotation without torque: a product of rotations about the principal axes.
 //!
-//! The kinetic energy `sum_a l_a^2 / (2 I_a)` is split by axes; each part turns the body about one of its
-//! axes by `dt l_a / I_a` and leaves the angular momentum in space alone (Dullweber, Leimkuhler and
-//! McLachlan, J. Chem. Phys. 107 (1997) 5840-5851). The product is symmetric in time and symplectic, like the
-//! drift of the leapfrog that it stands for.
+//! The kinetic energy `sum_a l_a^2 / (2 I_a)` is split by axes; each part rotates the body about one of its
+//! axes by `dt l_a / I_a` and conserves the angular momentum in space (Dullweber, Leimkuhler and McLachlan,
+//! J. Chem. Phys. 107 (1997) 5840-5851). The product is symmetric in time and symplectic, like the drift of
+//! the leapfrog that it replaces.
 
 use glam::{DMat3, DQuat, DVec3};
 

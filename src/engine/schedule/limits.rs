@@ -1,4 +1,4 @@
-//! The time step: the smallest of all limits that systems propose, and which one it was.
+//! The time step: the smallest of all limits that systems propose, and the name of that limit.
 
 use std::fmt::{Display, Write as _};
 

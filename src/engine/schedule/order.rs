@@ -1,5 +1,5 @@
-//! The order of the systems: stage by stage, sorted by `before` and `after`, checked for ambiguity. What
-//! writes a column runs before what adds to it, unless the opposite is stated.
+//! The order of the systems: stage by stage, sorted by `before` and `after`, checked for ambiguity. Systems
+//! that write a column run before those that add to it, unless the opposite is stated.
 
 use std::fmt::Write as _;
 use std::time::{Duration, Instant};

@@ -1,5 +1,4 @@
-//! What the running system has declared of the columns and of what systems share, and the first access that
-//! it has not.
+//! The declared access of the running system to columns and shared data, and its first undeclared access.
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -1,4 +1,4 @@
-//! Sums of what some rows of a body tell.
+//! Sums of values given for some rows of a body.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! Columns of which a rank has computed its own rows: they are exchanged when somebody reads the rest.
+//! Columns of which a rank has computed its own rows only: they are exchanged when a system reads the rest.
 //!
 //! A pass that is divided among ranks writes a column by [`PhaseView::write_own`]. The rows of other ranks
 //! are old from then on, until the column is read or written as a whole; that exchanges it. The calls of a

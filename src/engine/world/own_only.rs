@@ -1,4 +1,4 @@
-//! Which columns of a phase are there for the rows of this rank alone.
+//! The columns of a phase that are valid only in the rows of this rank.
 
 use std::any::TypeId;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -1,4 +1,4 @@
-//! Where particles are now whose rows at the start are known: fluids are sorted at times.
+//! Current rows of particles, from their rows at the start: fluids are sorted from time to time.
 
 use std::borrow::Cow;
 

@@ -1,5 +1,5 @@
-//! The columns that the formulations of the engine share, and the state of materials, of which a phase has
-//! what its materials need.
+//! The columns that the formulations of the engine share, and the state of materials; a phase has those that
+//! its materials need.
 
 use glam::{DMat3, DVec3};
 

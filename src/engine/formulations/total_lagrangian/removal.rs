@@ -1,5 +1,5 @@
-//! Removed particles leave the bonds: the remaining neighbours are fitted again, and the energy of the cut
-//! bonds is booked.
+//! Removed particles are left out of the bonds: the remaining neighbours are fitted again, and the energy of
+//! the cut bonds is booked.
 
 use glam::DMat3;
 

@@ -1,10 +1,10 @@
-//! Who may be a neighbour in the reference of a body: a list that lasts for many updates.
+//! Candidates for neighbours in the reference of a body: a list that is valid for many updates.
 //!
 //! Two particles are neighbours where both measure a distance below the mean of their support radii. With
 //! half axes l and support radii s, they are then closer than the mean of `s l`, more exactly of [`radii`].
-//! The list holds who is closer than that and a skin, and lasts as long as particles near each other have
-//! moved by less than the skin against each other. What is taken from it does not depend on when it was
-//! built: rows are ascending, and the distance decides.
+//! The list holds pairs closer than that plus a skin, and is valid as long as the relative displacement of
+//! nearby particles is less than the skin. The neighbours selected from it do not depend on its age: rows are
+//! ascending, and the distance is the only criterion.
 
 use std::ops::Range;
 

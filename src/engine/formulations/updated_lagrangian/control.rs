@@ -18,7 +18,7 @@
 //!
 //! Failed particles are in no sum.
 //!
-//! Before its first update a body has these sums already, those of its stress: there the terms fold into it,
+//! Before the first update these sums equal those of the stress: the terms are then folded into the stress,
 //! as in a total-Lagrangian body.
 
 use glam::{DMat3, DVec3};

@@ -1,9 +1,9 @@
 //! Neighbours, weights and moments of a reference, built from lists of candidates.
 //!
-//! Everything is done block by block in buffers that are kept from one update to the next: who is near by the
-//! largest radius, who is within the ellipsoids, weights of their distances, and moments of the weights as
-//! they are rounded. The stabilizers have the same neighbours with other weights, at the distances of the
-//! original pair vectors as the deformation has moved them, and moments of the original pair vectors.
+//! Everything is done block by block in buffers that are kept from one update to the next: particles within
+//! the largest radius, those within the ellipsoids, weights at their distances, and moments of the rounded
+//! weights. The stabilizers have the same neighbours with other weights, at the lengths of the original pair
+//! vectors mapped by the deformation, and moments of the original pair vectors.
 
 use std::ops::Range;
 

@@ -1,5 +1,5 @@
-//! The fit of the deformation since the last update, at the places of a new reference: it gives F_r, and the
-//! pass that follows at the same places takes it up.
+//! The fit of the deformation since the last update, at the positions of a new reference: it gives F_r, and
+//! the following pass at the same positions reuses it.
 
 use std::ops::Range;
 

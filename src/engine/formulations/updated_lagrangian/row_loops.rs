@@ -1,4 +1,4 @@
-//! The loops over pairs that make the rows of a block: distances, weights, moments. A lane is a neighbour.
+//! The loops over pairs that compute the rows of a block: distances, weights, moments. A lane is a neighbour.
 
 use std::ops::Range;
 

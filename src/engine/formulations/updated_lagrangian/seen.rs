@@ -1,4 +1,4 @@
-//! What the lists of a reference need to know of every particle, in the form that loops over pairs read.
+//! Data of every particle for the lists of a reference, packed for loops over pairs.
 
 use glam::{DMat3, DVec3};
 

@@ -2,21 +2,21 @@
 //!
 //! If the particle positions themselves were the reference, zero-energy motions would enter its pair vectors,
 //! and the next increments of the deformation gradient would contain part of them. The operator changes with
-//! every update: what enters F as such a motion grows does not leave F as it decays. F would drift away from
-//! the deformation of the material, faster with more frequent updates, and a vibrating body would permanently
-//! keep a part of its energy as strain that no motion releases.
+//! every update: F takes up such a motion as it grows, and does not release it as it decays. F would drift
+//! away from the deformation of the material, faster with more frequent updates, and a vibrating body would
+//! permanently keep a part of its energy as strain that no motion releases.
 //!
 //! The reference is therefore relaxed from the positions towards pair vectors that follow from F and the
 //! original ones alone,
 //!
 //! `x_r,i <- x_r,i + theta sum_j V_j w_ij [r_ij - (F_i + F_j) X_ij / 2] / sum_j V_j w_ij`,
 //!
-//! a few times. The sum is taken once, with the places of the particles; then only what the relaxation has
-//! moved is summed, x_r,j - x_j. The bracket vanishes for affine motions and is of third order for smooth
-//! ones; for zero-energy motions it is the part that the gradient does not see. It is measured from the
-//! original configuration and not from the last update, so that the remainder of one update is removed by the
-//! next. The particles are not at the relaxed positions and f is not I there; F_r = f^-1 F, so that an update
-//! does not change F.
+//! a few times. The sum is computed once, with the positions of the particles; later iterations sum only the
+//! displacements of the relaxation, x_r,j - x_j. The bracket vanishes for affine motions and is of third
+//! order for smooth ones; for zero-energy motions it is the part that the gradient does not see. It is
+//! measured from the original configuration and not from the last update, so that the remainder of one update
+//! is removed by the next. The particles are not at the relaxed positions and f is not I there; F_r = f^-1 F,
+//! so that an update does not change F.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! What a probe measures with.
+//! The instrument of a probe.
 
 use super::energies::EnergyColumns;
 use super::measure::Measure;

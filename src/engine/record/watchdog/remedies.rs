@@ -1,4 +1,4 @@
-//! What may help a flow that goes wrong: never a plugin that it has.
+//! Remedies that a message proposes for a flow that goes wrong: never a plugin that it has.
 
 use crate::formulations::fluid::{FlowCloud, FlowParticle, Group};
 use crate::notation::quantity;

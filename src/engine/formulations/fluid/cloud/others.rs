@@ -2,7 +2,7 @@
 //!
 //! The loops of most flows need only the particles near those of the rank, and ranks exchange no more than
 //! that. Probes, warnings and others that read particles elsewhere request the [whole
-//! cloud](FlowCloud::whole) first. In flows that move bodies, or whose boundaries have more than a pressure,
+//! cloud](FlowCloud::whole) first. In flows that move bodies, and beside walls with no slip or with suction,
 //! all ranks have all particles in every step.
 
 use std::cell::Ref;

@@ -1,4 +1,4 @@
-//! What bounds a fluid: its pressure, its shape, and how it repels lone particles.
+//! Boundaries of a fluid: pressure, shape, and repulsion of single particles.
 
 mod wall;
 

@@ -1,12 +1,12 @@
 //! Repulsion of fluid particles that come nearer to the surface of a boundary than a flow puts them.
 //!
-//! A lone particle at a wall has hardly a pressure, and the pressure of the wall, which is that of the fluid
-//! beside it, vanishes with it: nothing would stop it, and one that was torn out of a fluid, with a density
-//! below that at rest, is even drawn in. So the distance d of a fluid particle from the shape of the nearest
+//! A single particle at a wall has nearly zero pressure, and so has the wall, whose pressure is that of the
+//! fluid beside it: nothing would stop the particle, and one that was separated from a fluid, with a density
+//! below that at rest, is even attracted. So the distance d of a fluid particle from the shape of the nearest
 //! boundary has the energy
 //!
-//! `k/2 (l_i - d)^2` where `d < l_i`, with `l_i = 0.15 dx - s_i`, `k = m (3 c_0 / h)^2`, and one over m the
-//! sum of one over each mass; that of a wall is endless.
+//! `k/2 (l_i - d)^2` where `d < l_i`, with `l_i = 0.15 dx - s_i`, `k = m (3 c_0 / h)^2`, where 1/m is the sum
+//! of the inverse masses; that of a wall is zero.
 //!
 //! Particles of a fluid at rest stand half a spacing before a wall. Those that start nearer than the range,
 //! where lattices do not fit shapes, lack s_i of it, which falls as soon as they have been farther away and

@@ -1,10 +1,10 @@
-//! Distance of fluid particles from the shape of a body that has moved and bent.
+//! Distance of fluid particles from the shape of a body that has moved and deformed.
 //!
-//! A particle is taken back to where it would be in the body as the scene has it, and is compared with the
-//! shape there: by the motion of the whole body, where that is one affine map, else by the affine map that
-//! fits the particles of the body around it.
+//! The position of a particle is mapped back to the reference configuration of the body, and compared with
+//! the shape there: by the motion of the whole body, where that is one affine map, else by the affine map
+//! that fits the particles of the body around it.
 //!
-//! What is left of a body that has lost particles has another shape. Its particles are spheres, and the
+//! A body that has lost particles has another shape. Its particles are spheres, and the
 //! distance is that from the nearest. They overlap, so that nothing passes between two of them in the plane
 //! or four in space, and end before a fluid at rest begins.
 

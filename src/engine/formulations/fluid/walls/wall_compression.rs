@@ -1,16 +1,17 @@
-//! How a fluid is compressed by what the pressure of its boundaries does, in flows without a free surface.
+//! The rate of compression that is adjoint to the pressure force of boundaries, in flows without a free
+//! surface.
 //!
-//! The pressure of a boundary that pulls is a mean of that of the fluid, `p_w = sum_i V_i W_iw p_i / S_w`
+//! The pressure of a boundary with suction is a mean of that of the fluid, `p_w = sum_i V_i W_iw p_i / S_w`
 //! with `S_w = sum_f V_f W_wf` (`wall_pressure`, beside what gravity and loads add). The power of its force
 //! is `V_w p_w D_w`, with the rate of compression of the fluid as the boundary particle sees it,
 //!
 //! `D_w = sum_f V_f w_wf v_wf.x_wf`,
 //!
 //! so that of fluid particle i is greater by `sum_w V_w W_iw D_w / S_w`: the force is the adjoint of the rate
-//! of compression. The fluid loses what it does to its boundaries, the volume that it loses in all is that
-//! through which the force on them works, and it sees itself stretch along a wall on which it slides.
+//! of compression. The energy that the fluid loses is the work on its boundaries, its volume change is
+//! conjugate to the force on them, and sliding along a wall contributes a stretch.
 //!
-//! Boundaries that do not pull have no such part: their pressure is cut off at zero, and at the edge of a
+//! Boundaries without suction do not have this term: their pressure is cut off at zero, and at the edge of a
 //! free surface on a wall the fluid ahead of a particle is missing, so that sliding would compress it.
 
 use std::ops::Range;

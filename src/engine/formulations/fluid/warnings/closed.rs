@@ -1,8 +1,8 @@
-//! Whether walls pull where they should: in flows without a free surface, and there alone.
+//! Whether walls have suction where they should: in flows without a free surface, and only there.
 //!
-//! The pressure of walls that do not pull is no part of the balance of energy and volume
-//! (`walls::wall_compression`): what they take of the work on the fluid is missing in its pressure. At a free
-//! surface, walls that pull compress what slides along them.
+//! The pressure of walls without suction is not part of the balance of energy and volume
+//! (`walls::wall_compression`): the work that they take from the fluid is missing in its pressure. At a free
+//! surface, walls with suction compress fluid that slides along them.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,9 +1,9 @@
-//! Flows that are compressed: whether pressure changes the density by more than the few per cent that a
-//! liquid may have.
+//! Warning of compressed flows: pressure that changes the density by more than the few per cent that are
+//! acceptable in a liquid.
 //!
-//! The Mach number tells that of flows whose pressure is that of their inertia, rho v^2. Friction and loads
-//! make pressures of mu v / L and rho b L, however slow the flow is: in a journal bearing, a packed bed, a
-//! deep tank. So the standard deviation of the compression p / (rho_0 c_0^2) over a body is looked at. A
+//! The Mach number covers flows whose pressure is that of their inertia, rho v^2. Friction and loads cause
+//! pressures of mu v / L and rho b L, however slow the flow is: in a journal bearing, a packed bed, a deep
+//! tank. So the criterion is the standard deviation of the compression p / (rho_0 c_0^2) over a body. A
 //! constant added to the pressure changes nothing, and an impact passes: it has to last for some frames.
 
 use serde::{Deserialize, Serialize};

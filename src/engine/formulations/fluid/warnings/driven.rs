@@ -1,9 +1,9 @@
 //! Energy that the diffusion of density takes out of flows which walls drive.
 //!
-//! A particle that passes the end of a wall loses the share of its density that it owes to the wall faster
-//! than the fluid follows: behind the lips of a slot it is under tension and tears, and the diffusion of
-//! density takes what that shakes. Where walls do all the work, what is lost so is missing in the force on
-//! them. Waves that break lose as much in truth: a violent sloshing tank without viscosity 5 % in five
+//! A particle that passes the end of a wall loses the wall's contribution to its density faster than the
+//! fluid follows: behind the lips of a slot it is under tension, voids open, and the diffusion of density
+//! dissipates the energy of the disturbance. Where walls do all the work, this loss is missing in the force
+//! on them. Real breaking waves lose as much: a violently sloshing tank without viscosity 5 % in five
 //! seconds.
 
 use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud};

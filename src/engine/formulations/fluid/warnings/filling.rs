@@ -1,7 +1,8 @@
-//! Gaps and swelling: whether as much fluid is where the particles are as their densities say.
+//! Gaps and swelling: whether the density of the particles agrees with their spatial distribution.
 //!
 //! `sum_j V_j W_ij`, the particle itself and boundary particles included, is one wherever the volumes m / rho
-//! fill space. The density of a particle is moved by the velocities around it and does not see gaps.
+//! fill space. The density of a particle is integrated from the velocities around it, and does not change
+//! with gaps.
 
 use std::ops::Range;
 

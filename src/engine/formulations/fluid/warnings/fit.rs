@@ -1,8 +1,8 @@
 //! Whether the lattices of a fluid and of its boundaries fit at the start.
 //!
-//! Where particles of the two overlap or leave a gap, the densities of the fluid do not know it: a surface
-//! acts as if it stood elsewhere, by up to half a spacing, and forces are those of uneven particles. `sum_j
-//! V_j W_ij` of the particles beside the boundary shows it.
+//! Where particles of the two overlap or leave a gap, the densities of the fluid do not reflect it: the
+//! effective position of a surface is wrong by up to half a spacing, and forces are those of uneven
+//! particles. `sum_j V_j W_ij` of the particles beside the boundary shows it.
 
 use super::filling::FillingPass;
 use crate::formulations::fluid::cloud::{FlowCloud, RowSums};

@@ -1,8 +1,8 @@
 //! Light rigid bodies that the flow presses against what they touch.
 //!
-//! Where no particle of the fluid fits between a body and a wall, the fluid has no pressure there: what it
-//! does to the rest of the body presses the two together. A heavy body rests on the wall in any case; one
-//! that is lighter than the fluid would come up.
+//! Where no particle of the fluid fits between a body and a wall, the fluid has no pressure there, and its
+//! force on the rest of the body presses the two together. A heavy body rests on the wall in any case; one
+//! that is lighter than the fluid should rise.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};

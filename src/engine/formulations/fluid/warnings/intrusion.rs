@@ -1,7 +1,7 @@
 //! Fluid particles inside of the boundaries of the flow.
 //!
-//! A particle is taken back to where it would be in the body as the scene has it, by the affine map that fits
-//! the particles of the body around it, and is compared with the shape of the body there.
+//! The position of a particle is mapped back to the reference configuration of the body, by the affine map
+//! that fits the particles of the body around it, and compared with the shape there.
 
 use glam::{DMat3, DVec3};
 

@@ -1,4 +1,4 @@
-//! What a flow must not do, looked at in the course of the run.
+//! Warnings of flows during a run.
 
 mod half_space;
 

@@ -1,9 +1,9 @@
-//! Energy that stabilizers take out of flows that have hardly any friction to lose it by.
+//! Warning of energy that stabilizers dissipate in flows with hardly any friction.
 //!
-//! Where water breaks and falls, stabilizers take what a real flow would lose too. A fluid without a free
-//! surface, and one that no wall bounds, lose nothing without friction: what is missing there is an error.
-//! Particles that are driven past walls whose particles form stairs, or squeezed from one lattice into
-//! another, shake, and stabilizers take the energy of that.
+//! In breaking and falling water, stabilizers dissipate energy that a real flow would lose too. A fluid
+//! without a free surface, and one without walls, lose nothing without friction: a loss there is an error.
+//! Particles that move past stepped walls, or from one lattice arrangement into another, are disturbed, and
+//! stabilizers dissipate the energy of the disturbance.
 
 use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud};
 use crate::notation::quantity;

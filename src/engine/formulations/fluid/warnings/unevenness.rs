@@ -1,17 +1,17 @@
 //! Rows and lattices that have broken up, and lattices that do not: friction between uneven particles is too
 //! large, and particles in order yield like a solid.
 //!
-//! `m_i = sum_j V_j w_ij x_ij` over all neighbours is zero where particles are even. Two means of it are
-//! looked at, and in flows in which friction has taken more than what moves, also with the power of friction
-//! as weights, so that what goes on beside a small body is not lost in a large tank:
+//! `m_i = sum_j V_j w_ij x_ij` over all neighbours is zero where particles are evenly spread. The criteria
+//! are two means of it. In flows in which friction has dissipated more than the kinetic energy, they are also
+//! weighted with the power of friction, so that the surroundings of a small body in a large tank count:
 //!
 //! - The root mean square of h |m_i|. In channels, cavities and vortices at Reynolds numbers of 50 to 1000 it
 //!   is 0.042 to 0.054 once their rows have broken up, and then a channel has lost a tenth of its flux; with
 //!   `particle_shifting` it is 0.013 to 0.015, and in flows that stay in rows below 0.005.
 //! - The mean of h |p_i m_i| over the stress of friction `sqrt(mu P_i)`, with P_i the power per volume.
-//!   Particles in a lattice under pressure bear shear as a solid does: what has left its place in the lattice
-//!   is pushed back. A disc that sinks between walls, five particles in radius, is too slow by about a third
-//!   of this mean.
+//!   Particles in a lattice under pressure resist shear as a solid does: a particle that has left its lattice
+//!   site is pushed back. A disc that sinks between walls, five particles in radius, is too slow by about a
+//!   third of this mean.
 
 use super::friction::{FrictionOf, FrictionOfParticle};
 use crate::formulations::fluid::cloud::{FlowCloud, RowSums};

@@ -1,4 +1,4 @@
-//! Faults of a flow that are looked for during the run: particles inside of its boundaries, compression, gaps
+//! Checks of a flow during the run: particles inside of its boundaries, compression, gaps
 //! and swelling, rows that break up.
 
 use super::closed::ClosedWatch;

@@ -1,4 +1,4 @@
-//! What the faces at edges take over from the particles behind them.
+//! Forces that the faces at edges take over from the particles behind them.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! The faces of walls before fluid particles near edges.
+//! The faces of walls in front of fluid particles near edges.
 
 use std::ops::Range;
 

@@ -1,22 +1,22 @@
 //! Edges between walls.
 //!
-//! At the edge of a piston the fluid leans on the particles of the wall beside it, also along the motion of
-//! the piston, and these stand still: the piston found .93 of the pressure at 8 across, and a gate beside the
-//! floor as much less. There every particle of a wall moves as the faces around it do, along the normal of
-//! each. With the faces k before the fluid particles near particle w, their normals n_k, velocities v_k and
-//! weights c_k,
+//! At the edge of a piston the fluid also presses on the particles of the adjacent wall, and along the motion
+//! of the piston these are at rest: the piston had 0.93 of the pressure at 8 across, and a gate beside the
+//! floor likewise. At such edges every particle of a wall therefore moves as the faces around it do, along
+//! the normal of each. With the faces k before the fluid particles near particle w, their normals n_k,
+//! velocities v_k and weights c_k,
 //!
 //! `v*_w = (sum_k c_k n_k (x) n_k + c_w I)^-1 (sum_k c_k n_k (n_k.v_k) + c_w v_w)`
 //!
-//! takes the place of v_w in the rate of compression. It is v_w where all faces around are those of its own
-//! wall, and where faces do not part it is the motion that all of them have, for any angle between them. The
-//! force is the adjoint: from the force f_w of pressure on w, face k takes `c_k n_k (n_k.q_w)` with q_w =
-//! (...)^-1 f_w, and c_w q_w stays. Their sum is f_w, and the power of all is that of f_w with v*_w.
+//! takes the place of v_w in the rate of compression. It is v_w where all faces around belong to its own
+//! wall, and where faces do not separate it is their common motion, for any angle between them. The force is
+//! the adjoint: from the force f_w of pressure on w, face k takes `c_k n_k (n_k.q_w)` with q_w = (...)^-1
+//! f_w, and c_w q_w stays. Their sum is f_w, and the power of all is that of f_w with v*_w.
 //!
-//! This holds for particles that are behind the face of another wall, and half of it where such a face ends
-//! in the middle of a particle's spacing. All that is behind the plane of a face bears, along its normal,
-//! what a fluid without a corner would do, if the fluid ends at a right angle; beside a piston between two
-//! parallel walls the errors of the two other angles cancel.
+//! This holds for particles that are behind the face of another wall, with a weight of one half where such a
+//! face ends in the middle of a particle's spacing. If the fluid ends at a right angle, the particles behind
+//! the plane of a face together carry, along its normal, the force of a fluid without a corner; beside a
+//! piston between two parallel walls the errors of other angles cancel.
 
 mod forces;
 mod fronts;

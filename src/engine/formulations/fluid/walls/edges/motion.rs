@@ -1,4 +1,4 @@
-//! How the particles of walls beside edges move, and what that adds to the rates of compression.
+//! The motion of wall particles beside edges, and its contribution to the rates of compression.
 
 use std::ops::Range;
 

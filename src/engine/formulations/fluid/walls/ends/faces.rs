@@ -1,4 +1,4 @@
-//! The faces of walls before fluid particles.
+//! The faces of walls in front of fluid particles.
 
 use glam::DMat3;
 

@@ -1,4 +1,4 @@
-//! What a fluid particle past the end of a wall and the wall do to each other along it.
+//! The tangential pair force between a wall and a fluid particle past its end.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! What is along the faces of walls around a fluid particle.
+//! Projection onto the faces of walls around a fluid particle.
 
 use glam::{DMat3, DVec3};
 

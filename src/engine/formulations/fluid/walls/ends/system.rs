@@ -1,4 +1,4 @@
-//! Takes what is no expansion out of the rates of compression beside the ends of walls.
+//! Removes the spurious expansion beside the ends of walls from the rates of compression.
 
 use glam::{DMat3, DVec3};
 

@@ -6,7 +6,8 @@
 //! on one side and dry on the other, the two meet halfway.
 //!
 //! A gap that opens has to be filled from where the fluid is: its pressure falls by the head of that flow.
-//! Without it an impact of the fluid beside a body would lift it with a pressure that no fluid follows.
+//! Without this fall, an impact of the fluid beside a body would lift the body with a pressure that no inflow
+//! supports.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! Moments of what surrounds a particle beside a gap: its own body and the fluid, and other bodies.
+//! Moments of the particles around one beside a gap: its own body and the fluid, and other bodies.
 
 use glam::DVec3;
 

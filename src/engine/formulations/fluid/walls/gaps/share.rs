@@ -1,8 +1,8 @@
 //! The opposite of the force on a particle beside a gap, on the particles of the other bodies around it.
 //!
 //! They take shares by their weights, changed linearly in space so that their centre is on the line along
-//! which the force acts: momentum and angular momentum stay. Where that would ask for large shares of
-//! opposite signs, the force keeps its part along the line to their centre.
+//! which the force acts: momentum and angular momentum are conserved. Where that would need large shares of
+//! opposite signs, only the part of the force along the line to their centre remains.
 
 use glam::{DMat3, DVec3};
 
