@@ -85,7 +85,7 @@ pub fn execute(arguments: &CheckArguments, registry: &Registry) -> Result<(), Co
     Ok(())
 }
 
-/// What the user should look at, also where the trial fails.
+/// Prints the warnings, also where the trial fails.
 fn warn(sim: &Simulation) {
     for warning in sim.warnings() {
         complain(&format!("warning: {warning}"));

@@ -27,7 +27,7 @@ use super::values::whole;
 /// By how much clocks of files may be behind.
 const CLOCK: Duration = Duration::from_millis(20);
 
-/// How a run is carried out; what it computes does not depend on any of this.
+/// Options of execution; results do not depend on any of them.
 #[derive(Args, Clone)]
 pub struct How {
     /// Number of threads; without it, all cores
@@ -176,7 +176,7 @@ impl Execution {
         }
     }
 
-    /// What lies in the output folder, and what to do with it.
+    /// Content of the output folder, and its treatment.
     fn files(&self) -> Result<String, CommandFailure> {
         let (mut names, mut frames, mut earlier) = (Vec::new(), 0, 0);
         for file in folder::files(&self.folder)? {

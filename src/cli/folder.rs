@@ -11,7 +11,7 @@ pub const CHECKPOINT: &str = "checkpoint.mlc";
 /// Name of the state in which a run has failed.
 pub const FAILED: &str = "failed.mlc";
 
-/// What a recording begins with.
+/// First bytes of a recording.
 const SIGNATURE: &[u8; 4] = b"RRF2";
 
 /// The folder of a scene's output where none is given: `out/<scene file without extension>`.

@@ -18,5 +18,5 @@ pub fn processor_seconds() -> Option<f64> {
     Some((times.next()?? + times.next()??) / TICKS_PER_SECOND)
 }
 
-/// What Linux counts times of programs in.
+/// Unit of the times of programs in Linux.
 const TICKS_PER_SECOND: f64 = 100.0;

@@ -67,7 +67,7 @@ const LISTED: [(&str, &str); 6] = [
     ("at the sides of the domain", "Outside"),
 ];
 
-/// What scenes name beside that which is registered: heading, and name and meaning of each.
+/// Names of the scene language beside those registered: heading, and name and meaning of each.
 fn language(registry: &Registry) -> Vec<(&'static str, Vec<(String, String)>)> {
     let docs = documented(registry);
     let variants = |name: &str| docs.iter().find(|docs| docs.name == name).map(|docs| docs.variants.clone());

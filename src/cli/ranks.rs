@@ -81,7 +81,7 @@ pub fn require_equal(what: &str, value: &str) -> Result<(), CommandFailure> {
     }
 }
 
-/// What has been prepared, if all ranks have succeeded. A failure of this rank alone is told by it.
+/// The prepared value, if all ranks have succeeded. A failure of this rank alone is told by it.
 pub fn all_or_none<T>(prepared: Result<T, CommandFailure>) -> Result<T, CommandFailure> {
     if !ranks::has_several() || !ranks::any(prepared.is_err()) {
         return prepared;

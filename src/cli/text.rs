@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-/// What has kept the lines for the user from being written.
+/// Error that has kept lines for the user from being written.
 static UNSAID: Mutex<Option<std::io::Error>> = Mutex::new(None);
 
 /// Whether this process speaks to the user: of several ranks one alone.

@@ -56,14 +56,14 @@ pub struct Simulation {
     pace: summary::Throughput,
 }
 
-/// What a simulation is put together from.
+/// Parts of a simulation.
 pub(crate) struct SimulationParts {
     pub world: World,
     pub resources: Resources,
     pub schedule: Schedule,
     /// Phases that take sub-steps in the steps of the rest.
     pub sub_cycled: Vec<PhaseId>,
-    /// What it writes; none if it writes nothing.
+    /// The output; none if it writes nothing.
     pub output: Option<Shared<Output>>,
     /// Probes of the scene.
     pub probes: Vec<ResolvedProbe>,
@@ -87,7 +87,7 @@ pub enum RunError {
     /// A checkpoint could not be written.
     #[error(transparent)]
     Checkpoint(#[from] SaveError),
-    /// What the run writes could not be written.
+    /// An output of the run could not be written.
     #[error(transparent)]
     Record(#[from] crate::record::RecordError),
     /// Ranks compute what must be equal, and it is not.
@@ -103,7 +103,7 @@ pub enum RunError {
     StepTooSmall {
         /// Proposed step, s.
         dt: f64,
-        /// What limits it.
+        /// Name of the limit.
         by: String,
     },
     /// No program does as many steps.
@@ -114,7 +114,7 @@ pub enum RunError {
     TooManySteps {
         /// Proposed step, s.
         dt: f64,
-        /// What limits it.
+        /// Name of the limit.
         by: String,
         /// End of the run, s.
         end: f64,
@@ -182,8 +182,8 @@ impl Simulation {
         }
     }
 
-    /// What a probe of the scene shows now: name and value of each of its columns; nothing for energies, and
-    /// if no probe has the name.
+    /// Current value of a probe of the scene: name and value of each of its columns; nothing for energies,
+    /// and if no probe has the name.
     ///
     /// # Errors
     /// A column is missing.
@@ -198,7 +198,7 @@ impl Simulation {
         &self.world
     }
 
-    /// What systems share.
+    /// Shared data of systems.
     pub fn resources(&self) -> &Resources {
         &self.resources
     }
@@ -234,12 +234,12 @@ impl Simulation {
         &self.ledger
     }
 
-    /// What limits the next step.
+    /// The limit of the next step.
     pub fn limit(&self) -> Option<&Limit> {
         self.next_limit.as_ref()
     }
 
-    /// What the user should look at.
+    /// Warnings for the user.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }

@@ -10,7 +10,7 @@ use crate::{contact, coupled, exact, fluids, solids};
 pub struct Case {
     /// Its identity, such as `S11`.
     pub id: &'static str,
-    /// What it is, in one line.
+    /// Title, in one line.
     pub title: &'static str,
     /// Resolutions that show convergence, ascending: particles across the smallest dimension.
     pub resolutions: &'static [usize],

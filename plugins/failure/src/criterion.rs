@@ -55,7 +55,7 @@ pub(crate) struct WatchedCriterion {
     pub temperature: bool,
 }
 
-/// What a criterion looks at in one particle.
+/// State of one particle that a criterion evaluates.
 pub(crate) struct CriterionInput<'a> {
     pub deformation: &'a DMat3,
     /// Cauchy stress, Pa.

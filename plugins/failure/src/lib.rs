@@ -30,11 +30,11 @@ pub fn register(registry: &mut Registry) {
 }
 
 column! {
-    /// How near a particle is, or has been, to failure: 1 where its criterion is met.
+    /// Failure index of a particle: 1 where its criterion is or was met.
     pub struct FailureIndex(f64) = "failure_index", "w", "1";
     /// Energy set free by damage since the start, per reference volume.
     pub struct FractureEnergy(f64) = "fracture_energy", "w_f", "J/m^3";
-    /// What a damaged particle still stores, per reference volume.
+    /// Stored energy of a damaged particle, per reference volume.
     pub struct DamagedEnergy(f64) = "damaged_energy", "psi_D", "J/m^3";
     /// Deformation gradient at the end of the last step; of a failed particle that at failure.
     pub struct DamagedDeformation(glam::DMat3) = "damaged_deformation", "F_D", "1";

@@ -23,7 +23,7 @@ use meshless_engine::world::{
 
 use crate::ConductedTemperature;
 
-/// What a body conducts with.
+/// Conduction data of a body.
 #[derive(Clone, Copy)]
 pub(crate) struct Conductor {
     pub body: BodyId,
@@ -80,7 +80,7 @@ struct Conduction {
     sums: Vec<Heat>,
 }
 
-/// What a particle gains.
+/// Heat gain of a particle.
 #[derive(Clone, Copy, Default)]
 struct Gain {
     /// Heat in a second, W.
@@ -96,11 +96,11 @@ const DIGITS: f64 = 1e-12;
 /// The heat of some particles.
 #[derive(Clone, Copy, Default)]
 struct Heat {
-    /// What has come from elsewhere since the last step, J.
+    /// Heat from other sources since the last step, J.
     come: f64,
-    /// What conduction changes in all, J: nothing but rounding.
+    /// Total change of heat by conduction, J: rounding errors only.
     conducted: f64,
-    /// What particles gain and lose by it, J.
+    /// Heat exchanged between particles, J.
     exchanged: f64,
     /// Largest rate at which a particle comes to the temperature of its neighbours, 1/s.
     fastest: f64,
@@ -203,7 +203,7 @@ impl HeatField<'_> {
         0.5 * ((axes + 2.0) * y.length_squared() / along - trace)
     }
 
-    /// What a particle gains.
+    /// Heat gain of a particle.
     fn gain(&self, row: usize, shapes: &[Sym3], temperature: &[Temperature], conductivity: f64) -> Gain {
         let mut gain = Gain::default();
         let (own, volume) = (&shapes[row - self.first], self.pairs.volumes[row]);

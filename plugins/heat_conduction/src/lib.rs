@@ -78,7 +78,7 @@ impl Plugin for HeatConduction {
 }
 
 impl HeatConduction {
-    /// What a body conducts with; none where no conductivity is given for it.
+    /// Conduction data of a body; none where no conductivity is given for it.
     fn conductor(&self, id: BodyId, sim: &SimBuilder<'_>) -> Result<Option<Conductor>, SetupError> {
         let body = sim.body(id);
         let given = self.materials.get(&body.material_name).copied().or(self.conductivity);

@@ -18,7 +18,7 @@ pub struct Elastic {
     pub xi: f64,
     /// Coefficient of the error across a pair over xi.
     pub across: f64,
-    /// What it resists with after yield.
+    /// The modulus after yield.
     pub after_yield: AfterYield,
     /// The exact gradient of an energy, or the form of the paper.
     pub has_energy: bool,

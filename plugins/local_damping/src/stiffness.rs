@@ -10,7 +10,7 @@ meshless_engine::column! {
     pub struct PreviousForce(DVec3) = "previous_force", "f_n", "N";
 }
 
-/// What the last step tells about the motion of some particles, along their free axes.
+/// Motion of some particles in the last step, along their free axes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LastMotion {
     /// Work of the change of force on the displacement, with the sign of a resistance: - sum dx . df, J.

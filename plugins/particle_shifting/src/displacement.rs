@@ -17,7 +17,7 @@ pub struct Shift {
     pub inside: bool,
 }
 
-/// What the shifts of a body depend on beside its neighbourhoods.
+/// Input of the shifts of a body, beside its neighbourhoods.
 pub struct ShiftInput {
     /// Displacement over strain rate and first moment, `-4 s h^2 dt`, m2 s.
     factor: f64,

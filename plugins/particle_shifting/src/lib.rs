@@ -106,7 +106,7 @@ struct Shifting {
     repayment: Repayment,
 }
 
-/// What the passes compute, row by row of the fluids: scratch memory.
+/// Results of the passes, row by row of the fluids: scratch memory.
 #[derive(Default)]
 struct ShiftingFields {
     locals: Vec<Local>,

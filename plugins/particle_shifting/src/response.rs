@@ -19,7 +19,7 @@ const DEAD: f64 = 0.01;
 /// Rate at which the density follows the rest of the excess, over the strain rate.
 const RETURN: f64 = 1.0;
 
-/// What the displacements of a neighbourhood do to a particle.
+/// Effect of the displacements of a neighbourhood on a particle.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ShiftResponse {
     /// Change of its velocity, m/s: its new place has another.

@@ -55,7 +55,7 @@ impl Run for Marking {
 struct Pieces {
     /// Pieces of fewer particles are small.
     particles: usize,
-    /// What has been found of the piece of a particle; at most `particles` rows.
+    /// Rows found in the piece of a particle; at most `particles` rows.
     found: Vec<usize>,
 }
 

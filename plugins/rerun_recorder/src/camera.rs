@@ -55,9 +55,9 @@ impl Bounds {
 pub struct Eye {
     /// Position, m.
     pub position: [f64; 3],
-    /// What is in the middle of the picture, m.
+    /// The point in the middle of the picture, m.
     pub target: [f64; 3],
-    /// What points up in the picture.
+    /// The upward direction of the picture.
     pub up: [f64; 3],
 }
 

@@ -13,7 +13,7 @@ use crate::reading::RecordedFrame;
 use canvas::Canvas;
 use view::View;
 
-/// How a frame is drawn.
+/// Style of a drawn frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Look {
     /// Width \[pixels\].

@@ -31,12 +31,12 @@ pub struct RecordedBody {
     first_row: Option<RowId>,
 }
 
-/// What a recording shows at one time.
+/// Content of a recording at one time.
 #[derive(Clone, Debug)]
 pub struct RecordedFrame {
     /// Title of the scene.
     pub title: String,
-    /// What the colours mean: name of the field; empty without one.
+    /// Name of the field of the colours; empty without one.
     pub field: String,
     /// The colours of the bar, from its lower end to its upper one.
     pub bar: Vec<[u8; 3]>,
@@ -46,13 +46,13 @@ pub struct RecordedFrame {
     pub extremes: Vec<String>,
     /// Time of the frame \[s\].
     pub time: f64,
-    /// What points up.
+    /// The upward direction.
     pub up: [f64; 3],
     /// The bodies in the order of the scene.
     pub bodies: Vec<RecordedBody>,
     /// A box around the particles of all frames \[m\].
     pub bounds: Bounds,
-    /// What is wrong with the end of the file, if it has none: that of a run that was killed.
+    /// Error at the end of the file, if it has none: that of a killed run.
     pub cut_off: Option<String>,
 }
 
@@ -64,7 +64,7 @@ pub enum ReadError {
     Open {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the system.
         source: std::io::Error,
     },
     /// The file is no recording, or damaged.
@@ -72,7 +72,7 @@ pub enum ReadError {
     Damaged {
         /// The file.
         path: PathBuf,
-        /// What rerun says.
+        /// Error of rerun.
         message: String,
     },
     /// The recording has no particles at that time.
@@ -129,7 +129,7 @@ fn chunk_of(message: LogMsg) -> Result<Option<Chunk>, String> {
     }
 }
 
-/// What has been read so far.
+/// State of reading.
 struct RecordingReader {
     at: i64,
     first: i64,

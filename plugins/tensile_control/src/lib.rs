@@ -63,7 +63,7 @@ impl Plugin for TensileControl {
     }
 }
 
-/// How the neighbours of a particle are arranged.
+/// Arrangement of the neighbours of a particle.
 #[derive(Clone, Copy, Debug, Default)]
 struct Arrangement {
     /// Smallest eigenvalue of the moment matrix: one inside, about a half at a free surface.

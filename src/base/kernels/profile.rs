@@ -11,7 +11,7 @@ pub trait KernelProfile: Copy + Default + Send + Sync + 'static {
     const SUPPORT: f64;
     /// Factors sigma_d of unit integral in one, two and three dimensions.
     const NORMALISATION: [f64; 3];
-    /// Where the kernel is from; printed in the run log.
+    /// Source of the kernel; printed in the run log.
     const REFERENCE: &'static str;
 
     /// `f(q)`.

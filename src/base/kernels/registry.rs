@@ -8,7 +8,7 @@ use std::fmt;
 /// Code that is compiled once for every kernel, so that the kernel is inlined in its loops; see
 /// [`Kernel::dispatch`].
 pub trait KernelVisitor {
-    /// What the code returns.
+    /// Result of the code.
     type Output;
 
     /// Runs the code with the kernel as a type.
@@ -40,7 +40,7 @@ macro_rules! register_kernels {
                 match self { $(Self::$profile => $profile::SUPPORT),+ }
             }
 
-            /// Where the kernel is from.
+            /// Source of the kernel.
             pub const fn reference(self) -> &'static str {
                 match self { $(Self::$profile => $profile::REFERENCE),+ }
             }

@@ -27,7 +27,7 @@ pub struct Parting {
     window: Vec<DisplacementBox>,
 }
 
-/// How far particles have moved against each other, m.
+/// Relative displacement of particles, m.
 #[derive(Clone, Copy, Debug)]
 pub struct Parted {
     /// Those that were nearer than the length of a cell, at most.
@@ -79,8 +79,7 @@ impl Parting {
         self.length
     }
 
-    /// How far the particles have moved against each other since they were noted; without end where none
-    /// were.
+    /// Bound of the relative displacement of the particles since they were noted; infinite where none were.
     pub fn parted(&mut self, positions: &[DVec3]) -> Parted {
         if self.then.len() != positions.len() {
             return Parted { near: f64::INFINITY, all: f64::INFINITY };

@@ -33,7 +33,7 @@ struct RowBlock {
     ranges: Ranges,
 }
 
-/// What a build looks for.
+/// Task of a neighbour search.
 pub(super) struct Query<'a> {
     pub grid: &'a Grid,
     pub targets: Cloud<'a>,

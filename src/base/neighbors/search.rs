@@ -17,7 +17,7 @@ pub struct NeighborSearch {
     sources: GridSources,
 }
 
-/// What is known of the particles in the grid.
+/// The particles in the grid.
 #[derive(Debug, Default)]
 struct GridSources {
     count: usize,
@@ -34,7 +34,7 @@ pub struct FirstOfCloud<'a> {
     pub targets: usize,
 }
 
-/// What is looked for, beside the targets.
+/// Task of a search, beside the targets.
 #[derive(Clone, Copy)]
 struct SearchTask<'a> {
     same_set: bool,

@@ -97,7 +97,7 @@ macro_rules! split_by_rows {
         }
     };
 }
-/// What a block contributes to a reduction over all rows.
+/// Contribution of a block to a reduction over all rows.
 pub trait BlockSum: Copy + Default + Send {
     /// Adds the contribution of the next block.
     fn add(&mut self, next: &Self);

@@ -46,7 +46,7 @@ pub trait EightLanes: Arithmetic<Lanes = Lanes8> {
 /// A loop over blocks that is compiled once for every instruction path; what is said of [`HotLoop`] holds for
 /// it.
 pub trait BlockLoop {
-    /// What the loop returns.
+    /// Result of the loop.
     type Output;
     /// The loop; mark it `#[inline(always)]`.
     fn run<A: EightLanes>(self, arithmetic: A) -> Self::Output;

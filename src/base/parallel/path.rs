@@ -17,7 +17,7 @@ use super::arithmetic::{FourLanes, Portable};
 /// Everything that [`HotLoop::run`] calls must be `#[inline(always)]`, or it stays behind on the portable
 /// path.
 pub trait HotLoop {
-    /// What the loop returns.
+    /// Result of the loop.
     type Output;
     /// The loop.
     fn run<A: FourLanes>(self, arithmetic: A) -> Self::Output;
@@ -29,7 +29,7 @@ pub enum PathError {
     /// No path has that name, or this processor does not have its instructions.
     #[error("this processor has no instruction path `{name}`; it has {}", names())]
     Absent {
-        /// What was asked for.
+        /// The requested name.
         name: String,
     },
     /// Loops have run on another one.

@@ -17,7 +17,7 @@ impl<'a, T> Picked<'a, T> {
         Self { numbers, column, first: 0 }
     }
 
-    /// How many rows there are.
+    /// Number of rows.
     #[must_use]
     pub fn len(&self) -> usize {
         self.numbers.len()

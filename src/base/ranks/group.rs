@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use super::{Cut, Ranks};
 
-/// What a rank has exchanged with the others.
+/// Data exchanged between a rank and the others.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Traffic {
     /// Number of exchanges.
@@ -85,7 +85,7 @@ pub fn enter<T>(ranks: Rc<dyn Ranks>, f: impl FnOnce() -> T) -> T {
     f()
 }
 
-/// What `f` returns of the group, or `None` for a program that runs alone.
+/// Calls `f` with the group and returns its result, or `None` for a program that runs alone.
 pub(super) fn with<T>(f: impl FnOnce(&mut RankGroup) -> T) -> Option<T> {
     GROUP.with_borrow_mut(|group| group.as_mut().map(f))
 }
@@ -127,7 +127,7 @@ pub fn balanced_cut() -> Option<Cut> {
     with(|group| group.cut.balanced(&seconds))?
 }
 
-/// How loops are divided; none in a program that runs alone.
+/// The division of loops; none in a program that runs alone.
 pub fn cut() -> Option<Cut> {
     with(|group| group.cut.clone())
 }
@@ -152,7 +152,7 @@ pub fn abort(code: i32) {
     }
 }
 
-/// What this rank has exchanged since it entered.
+/// Data exchanged by this rank since it entered.
 pub fn traffic() -> Traffic {
     with(|group| group.traffic).unwrap_or_default()
 }

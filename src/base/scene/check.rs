@@ -146,8 +146,7 @@ fn check_contacts(scene: &Scene, problems: &mut Vec<Problem>) {
 }
 
 impl Select {
-    /// What is wrong with the selection in this scene: for each the field, the message and what would be
-    /// right.
+    /// Problems of the selection in this scene: for each the field, the message and the correction.
     pub fn problems(&self, scene: &Scene) -> Vec<(&'static str, String, Vec<String>)> {
         let mut problems = Vec::new();
         if let Some((message, help)) = self.body.as_deref().and_then(|name| unknown_bodies(scene, name)) {
@@ -171,7 +170,7 @@ pub(super) fn unknown_body(scene: &Scene, name: &str) -> Option<(String, Vec<Str
     scene.body(name).is_none().then(|| unknown("body", name, &names))
 }
 
-/// What is wrong with a name that may stand for several bodies.
+/// Problem of a name that may stand for several bodies.
 pub(super) fn unknown_bodies(scene: &Scene, name: &str) -> Option<(String, Vec<String>)> {
     match name.strip_suffix(ANY) {
         None => unknown_body(scene, name),

@@ -70,7 +70,7 @@ impl Contact {
     }
 }
 
-/// What stands for any rest of a name; no name has it.
+/// Wildcard for the rest of a name; no name contains it.
 pub(super) const ANY: char = '*';
 
 /// Whether `name` of a scene means the body with this name: the same, or its beginning followed by a star.

@@ -25,7 +25,7 @@ use super::tree::Node;
 /// A text can hold that many bad fields before reading gives up to look for more.
 const MAX_PASSES: usize = 64;
 
-/// What is shared while a tree is read.
+/// Data shared while a tree is read.
 struct Context<'a> {
     /// The text that the tree was read from, and the place of its first byte in the file.
     text: &'a str,
@@ -44,7 +44,7 @@ impl<'a> Context<'a> {
         Self { text, offset, symbols, problems, bad_fields, incomplete: Cell::new(false) }
     }
 
-    /// What was reported, in the order of the text.
+    /// The reported problems, in the order of the text.
     fn into_problems(self) -> Vec<Problem> {
         let mut problems = self.problems.into_inner();
         problems.sort_by_key(|problem| match &problem.at {
@@ -62,7 +62,7 @@ impl<'a> Context<'a> {
     }
 }
 
-/// What could be read, and what is wrong.
+/// The decoded value and the problems.
 pub(super) struct Decoded<T> {
     /// The value, if it is whole but for fields that it does not have.
     pub value: Option<T>,

@@ -20,7 +20,7 @@ use super::symbols::Symbols;
 pub(super) use self::compile::{constant, words};
 pub(super) use self::functions::is_reserved;
 
-/// What expressions may name beside parameters and tables, with its meaning.
+/// Names allowed in expressions beside parameters and tables, with their meaning.
 pub fn expression_names() -> &'static [(&'static str, &'static str)] {
     &functions::MEANINGS
 }
@@ -105,9 +105,9 @@ pub struct ExpressionError {
     pub start: usize,
     /// Byte after the last.
     pub end: usize,
-    /// What was found.
+    /// The error.
     pub message: String,
-    /// What would be right; may be empty.
+    /// The correction; may be empty.
     pub help: String,
 }
 

@@ -32,7 +32,7 @@ pub(super) fn steps(path: &str) -> Option<Vec<PathStep>> {
     Some(steps)
 }
 
-/// What one step from a value leads to.
+/// Result of one step from a value.
 pub(super) enum PathEnd<'a> {
     /// A field and its value.
     Field(&'a StructField),
@@ -49,7 +49,7 @@ impl<'a> PathEnd<'a> {
     }
 }
 
-/// What `step` leads to from `node`.
+/// Result of `step` from `node`.
 pub(super) fn child<'a>(node: &'a Node, step: &PathStep) -> Option<PathEnd<'a>> {
     match (&node.kind, step) {
         (NodeKind::Fields(_), PathStep::Name(name)) => node.field(name).map(PathEnd::Field),

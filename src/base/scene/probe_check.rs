@@ -47,7 +47,7 @@ pub(super) fn check(scene: &Scene, problems: &mut Vec<Problem>) {
     }
 }
 
-/// What is wrong with where a probe measures.
+/// Problem of the place where a probe measures.
 fn place(probe: &Probe, i: usize) -> Option<Problem> {
     let places = [probe.on.is_some(), probe.at.is_some(), probe.line.is_some()];
     let (field, message) = match (places, &probe.quantity) {
@@ -72,7 +72,7 @@ fn place(probe: &Probe, i: usize) -> Option<Problem> {
     ))
 }
 
-/// What is wrong with the other fields of a probe.
+/// Problem of the other fields of a probe.
 fn options(probe: &Probe, i: usize) -> Option<Problem> {
     let is_of_field = probe.quantity.at_point().is_none();
     let extreme = matches!(probe.take, Some(Take::Minimum | Take::Maximum));

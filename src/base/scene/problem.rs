@@ -11,11 +11,11 @@ use super::path;
 /// One thing that is wrong with a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
-    /// What was found, lower case, without a full stop.
+    /// The finding, lower case, without a full stop.
     pub message: String,
     /// Where it is.
     pub at: SourcePlace,
-    /// What would be right, a line each.
+    /// The corrections, a line each.
     pub help: Vec<String>,
 }
 
@@ -111,7 +111,7 @@ fn first_line(text: &str, span: Range<usize>) -> Range<usize> {
 pub struct SceneError {
     /// The text that the problems are about.
     pub source: Source,
-    /// What is wrong, in the order of the text.
+    /// The problems, in the order of the text.
     pub problems: Vec<Problem>,
 }
 

@@ -16,7 +16,7 @@ pub struct Parameter {
     pub kind: String,
     /// Value where a scene does not give one, as a scene would write it.
     pub default: Option<String>,
-    /// What it is, with its unit.
+    /// Description, with its unit.
     pub doc: String,
     /// Whether a scene must give it.
     pub required: bool,
@@ -57,7 +57,7 @@ impl Described {
 pub struct TypeDoc {
     /// Name of the type.
     pub name: String,
-    /// What it is, with its unit.
+    /// Description, with its unit.
     pub doc: String,
     /// Its fields or variants as Markdown; empty if it has none.
     pub body: String,
@@ -314,7 +314,7 @@ fn write_body(page: &mut String, schema: &Value, definitions: &Definitions) {
     }
 }
 
-/// What a variant of an enum means.
+/// Meaning of a variant of an enum.
 fn doc_of_variant(schema: &Value, variant: &str) -> String {
     let options = schema.get("oneOf").and_then(Value::as_array).map(Vec::as_slice).unwrap_or_default();
     let is = |option: &&Value| {

@@ -42,7 +42,7 @@ impl Symbols {
     }
 }
 
-/// What is wrong with a name that a scene defines: the message and what would be right.
+/// Problem of a name that a scene defines: the message and the correction.
 pub(super) fn fault_of_name(name: &str) -> Option<(String, String)> {
     let fits = |c: char| c.is_alphanumeric() || c == '_';
     if is_reserved(name) {

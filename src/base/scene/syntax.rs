@@ -188,7 +188,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// What stands in round brackets: fields when it starts with `name:`, else a tuple.
+    /// Content of round brackets: fields when it starts with `name:`, else a tuple.
     fn brackets(&mut self, name: Option<Word>, start: usize) -> Result<Node, Problem> {
         let open = self.at + 1 + self.offset;
         let back = self.at;

@@ -21,7 +21,7 @@ pub(super) struct Node {
     pub kind: NodeKind,
 }
 
-/// What a value is made of.
+/// Kind and content of a value.
 #[derive(Clone, Debug)]
 pub(super) enum NodeKind {
     /// A word without brackets: `None`, `true`, `Eulerian`.
@@ -83,7 +83,7 @@ impl Node {
         matches!(self.kind, NodeKind::Bare) && self.name.as_ref().is_some_and(|name| name.text == word)
     }
 
-    /// What a message calls the value.
+    /// Description of the value for messages.
     pub fn describe(&self) -> String {
         let name = self.name.as_ref().map(|name| name.text.as_str());
         match &self.kind {

@@ -12,19 +12,19 @@ use super::surface::{Surface, SurfacePoint};
 /// Cells that the faces of boxes may make before the volume is integrated numerically.
 const MAX_BOX_CELLS: usize = 200_000;
 
-/// What is in any of the parts.
+/// Union of the parts.
 pub(super) struct Union<R: ?Sized> {
     pub parts: Vec<Box<R>>,
     pub axes: usize,
 }
 
-/// What is in all of the parts.
+/// Intersection of the parts.
 pub(super) struct Intersection {
     pub parts: Vec<Box<dyn Region>>,
     pub axes: usize,
 }
 
-/// What is in the first part, but not inside the second.
+/// The first part without the second.
 pub(super) struct DifferenceRegion<R: ?Sized> {
     pub whole: Box<R>,
     pub hole: Box<R>,

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::error::FillErrorKind;
 use super::fill::Site;
 
-/// What a concentric lattice fills.
+/// Shape filled by a concentric lattice.
 #[derive(Clone, Copy, Debug)]
 pub enum Rings {
     /// A disc or ring in z = 0.
@@ -53,7 +53,7 @@ impl Rings {
         }
     }
 
-    /// What is left of it without `hole`, if that is a solid one about the same centre or axis, and goes
+    /// The remaining shape without `hole`, if that is a solid one about the same centre or axis, and goes
     /// through from end to end.
     pub(super) fn bored(self, hole: Self) -> Option<Self> {
         match (self, hole) {

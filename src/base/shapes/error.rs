@@ -13,7 +13,7 @@ pub struct FillError {
     /// The field that is wrong, from the body on: `spacing`, `shape.max`, `shape[0].radius` (an argument
     /// without a name), `shape[0][2]` (an element of a list).
     pub path: String,
-    /// What is wrong with it.
+    /// The kind of error.
     pub kind: FillErrorKind,
 }
 
@@ -22,7 +22,7 @@ impl FillError {
         Self { path: path.into(), kind }
     }
 
-    /// What is wrong, with the name of the field where the requirement is on one number.
+    /// The error, with the name of the field where the requirement is on one number.
     pub fn message(&self) -> String {
         match self.kind {
             FillErrorKind::NotPositive(_) => {
@@ -34,7 +34,7 @@ impl FillError {
     }
 }
 
-/// What is wrong with a field of a shape, or with the particles that would fill it.
+/// Errors of a field of a shape, or of the particles that would fill it.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum FillErrorKind {
@@ -75,7 +75,7 @@ pub enum FillErrorKind {
         shape: &'static str,
         /// The dimensions it needs, `two` or `three`.
         needs: &'static str,
-        /// What to write in its place.
+        /// The replacement.
         instead: &'static str,
     },
     /// A polygon with too few corners.
@@ -116,7 +116,7 @@ pub enum FillErrorKind {
     /// A relaxation that would never end.
     #[error("expected at most {limit} iterations, found {found}")]
     Iterations {
-        /// What the scene asks for.
+        /// The value in the scene.
         found: u32,
         /// The most that is allowed.
         limit: u32,
@@ -147,7 +147,7 @@ pub enum FillErrorKind {
     File {
         /// The file as looked for.
         file: String,
-        /// What the system says.
+        /// Error of the system.
         source: std::io::Error,
     },
     /// A mesh that is no solid.
@@ -155,7 +155,7 @@ pub enum FillErrorKind {
     Mesh {
         /// The file as looked for.
         file: String,
-        /// What is wrong with it.
+        /// The fault.
         fault: MeshFault,
     },
     /// A mesh too small or too large for the spacing: most likely in another unit.
@@ -184,13 +184,13 @@ pub enum FillErrorKind {
         file: String,
         /// Line, counted from 1.
         line: u64,
-        /// What was found and what would be right.
+        /// The finding and the correction.
         message: String,
     },
 }
 
 impl FillErrorKind {
-    /// What would be right, where the message does not say it.
+    /// The correction, where the message does not say it.
     pub fn help(&self) -> Option<String> {
         Some(match self {
             Self::WrongDimension { instead, .. } => format!("use {instead}"),

@@ -28,7 +28,7 @@ pub struct Site {
     pub volume: f64,
 }
 
-/// How a shape is filled.
+/// Options for filling a shape.
 #[derive(Clone, Copy, Debug)]
 pub struct Filling<'a> {
     /// Arrangement of the particles.

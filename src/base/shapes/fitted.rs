@@ -22,7 +22,7 @@ const VOLUME_SAMPLES: [usize; 2] = [12, 6];
 /// Step of the differences that give the direction to the boundary, in spacings.
 const STEP: f64 = 1e-5;
 
-/// What is near the boundary of a region.
+/// The particles near the boundary of a region.
 struct Band<'a> {
     region: &'a dyn Region,
     depth: f64,

@@ -72,7 +72,7 @@ pub(super) fn moments(
     moments
 }
 
-/// What the cells are cut out of, and how they are sampled.
+/// Bounds and sampling of the cells.
 struct Sampling<'a> {
     region: &'a dyn Region,
     buckets: &'a TileBuckets<'a>,

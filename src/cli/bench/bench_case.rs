@@ -7,7 +7,7 @@ use meshless_validation::Template;
 pub struct BenchCase {
     /// Name on the command line.
     pub name: &'static str,
-    /// What it is, in one line.
+    /// Title, in one line.
     pub title: &'static str,
     scene: (&'static str, &'static str),
     /// The spacing for a number of particles, m.

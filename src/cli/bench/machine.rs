@@ -3,7 +3,7 @@
 use meshless_engine::parallel::instruction_path;
 use serde::{Deserialize, Serialize};
 
-/// What a figure must not be told apart from.
+/// Machine data that must accompany a figure.
 #[derive(Serialize, Deserialize)]
 pub struct Machine {
     /// Model of the processor, as far as the system tells.

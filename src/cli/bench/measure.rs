@@ -18,7 +18,7 @@ use super::machine;
 /// Steps before the clock starts: lists and buffers have their size then.
 const WARM_UP: u64 = 3;
 
-/// What is to be measured.
+/// The measurement to carry out.
 #[derive(Clone, Copy)]
 pub struct BenchSetUp<'a> {
     /// The case.
@@ -33,7 +33,7 @@ pub struct BenchSetUp<'a> {
     pub least: Duration,
 }
 
-/// What was measured.
+/// Result of a measurement.
 #[derive(Serialize, Deserialize)]
 pub struct Measurement {
     /// Name of the case.
@@ -63,7 +63,7 @@ pub struct Measurement {
     pub bytes_per_particle: Option<f64>,
     /// Exchanges with other ranks in a step.
     pub exchanges_per_step: f64,
-    /// What a rank receives in a step, B.
+    /// Data received by a rank in a step, B.
     pub bytes_per_step: f64,
     /// From the scene to the end of the first step, s.
     pub first_step_after: f64,

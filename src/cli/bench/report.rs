@@ -13,7 +13,7 @@ pub fn list(cases: &[&BenchCase]) -> String {
     cases.iter().map(|case| format!("{:<15} {}\n", case.name, case.title)).collect()
 }
 
-/// What is measured, and on what.
+/// Heading: measured case and machine.
 pub fn heading(machine: &Machine) -> String {
     format!(
         "{}, {}, meshless {}\n\

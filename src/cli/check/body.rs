@@ -16,7 +16,7 @@ pub struct BodyReport {
     pub name: String,
     /// Formulation.
     pub formulation: String,
-    /// What it is: its formulation tells.
+    /// Kind of the body, from its formulation.
     #[serde(skip)]
     pub kind: Option<BodyKind>,
     /// Material.

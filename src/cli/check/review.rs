@@ -41,7 +41,7 @@ pub fn notes(scene: &Scene, bodies: &[BodyReport], sim: &Simulation, trial: &Tri
     notes
 }
 
-/// What a probe misses that samples the force of a fluid more seldom than its sound changes it.
+/// Note on a probe that samples the force of a fluid at longer intervals than its acoustic period.
 fn of_probe(probe: &Probe, scene: &Scene, sim: &Simulation) -> Option<String> {
     let is_force = matches!(probe.quantity, Quantity::FluidForce | Quantity::FluidTorque { .. });
     let seldom = scene.probe_interval(probe) > STEPS_OF_SOUND * sim.clock().dt;

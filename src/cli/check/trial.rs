@@ -13,13 +13,13 @@ const TRIAL: Duration = Duration::from_millis(500);
 /// Largest number of trial steps.
 const TRIAL_STEPS: u64 = 50;
 
-/// What some steps have shown.
+/// Result of some trial steps.
 pub struct TrialSteps {
     steps: u64,
     wall: f64,
     /// First step, s.
     pub dt: f64,
-    /// What limits it.
+    /// Name of the limit.
     pub limit: String,
 }
 

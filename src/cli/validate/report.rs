@@ -8,7 +8,7 @@ use meshless_validation::{Case, Check, Tolerance, at_no_spacing};
 use crate::cli::failure::CommandFailure;
 use crate::cli::text::say;
 
-/// What has been run so far.
+/// State of a validation so far.
 #[derive(Default)]
 pub struct ValidationReport {
     done: Vec<(&'static str, usize, Vec<Check>)>,

@@ -36,7 +36,7 @@ pub(super) struct Motions {
 type Velocity<'a> = Box<dyn Fn(f64) -> DVec3 + 'a>;
 
 impl Motions {
-    /// What the conditions of a scene say, once all are built.
+    /// The prescribed motions and loads of a scene, once all conditions are built.
     pub fn of(sim: &SimBuilder<'_>) -> Self {
         let mut driven: BTreeMap<BodyId, [Option<MotionOfPlace>; 3]> = BTreeMap::new();
         for body in sim.extensions::<DrivenBody>() {

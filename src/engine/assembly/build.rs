@@ -88,7 +88,7 @@ fn build_in(
     start(scene, source, sim, Outputs { output, probes })
 }
 
-/// What a simulation writes.
+/// Output of a simulation.
 struct Outputs {
     output: Option<Shared<Output>>,
     probes: Vec<ResolvedProbe>,

@@ -32,7 +32,7 @@ pub(super) fn warn(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>)
     warnings.into_iter().for_each(|warning| sim.warn(warning));
 }
 
-/// What is wrong beside a side, if anything is.
+/// Warning of a side, if there is one.
 fn of_side(body: &BodyPlan, face: Face) -> Option<String> {
     let name = &body.name;
     let (axis, sign) = face.outward();

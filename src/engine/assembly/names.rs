@@ -4,7 +4,7 @@
 use crate::plugin::{BodyKind, EntryKind, Registry};
 use crate::scene::{BodyDescription, Item, Problem, Scene, unknown};
 
-/// What is wrong with the names of a scene and their parameters.
+/// Problems of the names of a scene and their parameters.
 pub(super) fn problems(scene: &Scene, registry: &Registry) -> Vec<Problem> {
     let mut found = Vec::new();
     for (kind, item) in items(scene) {

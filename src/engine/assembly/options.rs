@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use crate::record::{Existing, OutputOptions};
 
-/// What is asked of a simulation beside its scene. By default it writes nothing.
+/// Options of a simulation beside its scene. By default it writes nothing.
 #[derive(Clone, Debug, Default)]
 pub struct BuildOptions {
     /// Where the run writes; without it nothing touches the disk.

@@ -92,7 +92,7 @@ mod tests {
     use crate::plugin::Registry;
     use crate::scene::{Source, parse};
 
-    /// What is said of a ring that is filled finely about a disc of another radius that is filled coarsely.
+    /// Error of a finely filled ring about a coarsely filled disc of another radius.
     fn error(radius: f64, disc: &str, contact: &str) -> Option<String> {
         let text = format!(
             r#"(dimension: Two, materials: {{"m": NeoHookean(density: 1000, young: 1e7, poisson: 0.3)}},

@@ -7,7 +7,7 @@ use crate::materials::{
 use crate::plugin::Registry;
 
 impl Registry {
-    /// What the engine itself brings: materials, formulations, conditions and contact laws, no plugin.
+    /// The registry of the engine itself: materials, formulations, conditions and contact laws, no plugin.
     pub fn standard() -> Self {
         Self::default()
             .with(register_materials)

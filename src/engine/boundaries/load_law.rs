@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::part::Part;
 use crate::schedule::{Step, StepError};
 
-/// What gives the force on every particle of a part.
+/// The force of a load on every particle of a part.
 pub(super) trait LoadLaw: Send + Sync + 'static {
     /// Writes the force on every particle of part `k`, N, at the end of the step.
     fn forces(&self, k: usize, part: &Part, step: &Step<'_>, out: &mut Vec<DVec3>) -> Result<(), StepError>;

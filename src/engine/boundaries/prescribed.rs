@@ -86,7 +86,7 @@ pub(super) fn prescribe(
     Ok(())
 }
 
-/// What a motion prescribes, for others on the same particles.
+/// The prescription of a motion, for other conditions on the same particles.
 fn prescription(motion: &PrescribedMotion) -> Prescription {
     let field = motion.field.clone();
     let value: MotionOfPlace = Arc::new(move |point, t| field.at(point, t));

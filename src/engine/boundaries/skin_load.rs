@@ -27,7 +27,7 @@ use crate::world::{
     Body, BodyId, BodySet, Damage, DeformationGradient, Force, Mobility, Position, Removed, Velocity,
 };
 
-/// What gives the force on a facet.
+/// Kind of the force on a facet.
 pub(super) enum LoadKind {
     /// A force per area of the reference configuration.
     Traction(VectorField),
@@ -46,7 +46,7 @@ struct SkinLoad {
     factor: f64,
     /// Forces on the vertices at the end of the last step, N.
     last: Vec<DVec3>,
-    /// What becomes of the load where the body fails, if it can.
+    /// Treatment of the load where the body fails, if it can.
     breaking: Breaking,
     /// Whether particles that carry the facets have failed and act in their place.
     is_broken: bool,
@@ -54,7 +54,7 @@ struct SkinLoad {
     is_told: bool,
 }
 
-/// What becomes of a load where particles that carry its facets fail.
+/// Treatment of a load where particles that carry its facets fail.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Breaking {
     /// The body cannot fail.
@@ -126,7 +126,7 @@ fn skin_of(select: &Select, body: &BodyPlan, sim: &SimBuilder<'_>) -> Option<Arc
     Skin::of(body, shape, &repeats, sim.dimension(), sim.folder()).map(Arc::new)
 }
 
-/// What a scene says of a loaded surface.
+/// The loaded surface in a scene.
 #[derive(Clone, Copy)]
 pub(super) struct LoadedSurface<'a> {
     pub select: &'a Select,
@@ -250,7 +250,7 @@ impl Run for Make {
     }
 }
 
-/// What a checkpoint keeps of a load; facets that are left out follow from the damage of the particles.
+/// State of a load in a checkpoint; facets that are left out follow from the damage of the particles.
 #[derive(Serialize, Deserialize)]
 struct Saved {
     last: Vec<DVec3>,

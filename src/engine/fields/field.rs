@@ -11,7 +11,7 @@ use crate::world::{BodyId, ColumnInfo, ColumnSet, MissingColumn, Value, World};
 pub struct FieldInput<'a> {
     /// Columns and bodies.
     pub world: &'a World,
-    /// What systems share.
+    /// Shared data of systems.
     pub resources: &'a Resources,
     /// The body.
     pub body: BodyId,
@@ -112,7 +112,7 @@ impl Field {
         self.unit
     }
 
-    /// What it is, in the first sentence of its description; empty without one.
+    /// The first sentence of its description; empty without one.
     pub fn description(&self) -> &'static str {
         let text = self.about.trim();
         let end = [". ", "; "].iter().filter_map(|end| text.find(end)).min().unwrap_or(text.len());

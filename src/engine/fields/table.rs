@@ -5,7 +5,7 @@ use super::{deformation, motion, stress};
 use crate::plugin::{BodyKind, SimBuilder};
 use crate::world::{BodySet, ColumnSet};
 
-/// What decides which fields the particles of a body have.
+/// Columns and kinds that decide which fields the particles of a body have.
 pub(super) struct BodyColumns {
     pub name: String,
     kind: BodyKind,

@@ -63,7 +63,7 @@ pub(crate) fn constrained(mobility: DVec3) -> DVec3 {
     DVec3::select(mobility.cmpeq(DVec3::ZERO), DVec3::ONE, DVec3::ZERO)
 }
 
-/// What a pass learns of a block.
+/// Sums over a block.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
 struct MotionSum {
@@ -89,7 +89,7 @@ impl BlockSum for MotionSum {
     }
 }
 
-/// What both kicks need of a block.
+/// Rows of a block for both kicks.
 type Rows<'a> = (&'a mut [Velocity], &'a [Force], &'a [Mobility], &'a [Mass]);
 
 /// The same component by component, and the masses.

@@ -5,7 +5,7 @@ use glam::{DMat3, DVec3};
 use crate::simulation::{RunError, Simulation};
 use crate::world::{BodyId, DeformationGradient, Force, MissingColumn, Position, Velocity};
 
-/// What makes simulations whose first body is the specimen.
+/// A function that makes simulations whose first body is the specimen.
 pub struct Specimen<'a, E> {
     make: &'a dyn Fn() -> Result<Simulation, E>,
 }
@@ -21,7 +21,7 @@ pub struct NetForce {
     pub size: f64,
 }
 
-/// What an affine map shows.
+/// Results for an affine map.
 #[derive(Clone, Copy, Debug)]
 pub struct Affine {
     /// Largest error of a component of the deformation gradient.
@@ -32,7 +32,7 @@ pub struct Affine {
     pub held: f64,
 }
 
-/// What a rough displacement shows.
+/// Results for a rough displacement.
 #[derive(Clone, Copy, Debug)]
 pub struct ForceSlope {
     /// Largest difference of a force from the slope of the stored energy, over the largest force.

@@ -10,9 +10,9 @@ use crate::notation::number;
 pub struct ParameterError {
     /// Name of the parameter; empty if the fault lies in no single one.
     pub field: &'static str,
-    /// What was found.
+    /// The finding.
     pub message: String,
-    /// What would be right.
+    /// The correction.
     pub help: String,
 }
 

@@ -17,7 +17,7 @@ pub enum EquationOfState {
     },
 }
 
-/// What the stress of a fluid depends on.
+/// Constitutive data of a fluid: equation of state and viscosity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FluidLaw {
     /// Speed of sound c_0, m/s; none until it is estimated from the scene.

@@ -11,7 +11,7 @@ use super::hardening::Hardening;
 use super::return_mapping::Trial;
 use crate::linalg::Sym3;
 
-/// What a step of the hypoelastic law starts from and leaves.
+/// State of the hypoelastic law before and after a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HypoelasticState {
     /// Deviator of the Cauchy stress S, Pa.

@@ -19,11 +19,11 @@ use crate::world::ColumnSet;
 pub struct Material {
     /// Density in the reference configuration rho_0, kg/m3.
     pub density: f64,
-    /// What the stress depends on.
+    /// The constitutive law.
     pub law: Law,
 }
 
-/// What the stress of a material depends on.
+/// The constitutive law of a material.
 #[derive(Clone)]
 pub enum Law {
     /// On the deformation.
@@ -40,12 +40,12 @@ impl Material {
         Self { density, law: Law::Solid(Arc::new(law)) }
     }
 
-    /// What walls are made of that name no material of the scene: they have no mass.
+    /// The empty material of walls that name no material of the scene: they have no mass.
     pub fn nothing() -> Self {
         Self { density: 0.0, law: Law::Nothing }
     }
 
-    /// What the material is, in words.
+    /// The kind of the material, in words.
     pub fn word(&self) -> &'static str {
         match self.law {
             Law::Solid(_) => "a solid",

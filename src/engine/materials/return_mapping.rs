@@ -3,7 +3,7 @@
 use super::hardening::Hardening;
 use super::value_and_slope::ValueAndSlope;
 
-/// What a return starts from.
+/// Trial state of a return mapping.
 #[derive(Clone, Copy, Debug)]
 pub struct Trial {
     /// Equivalent stress if the step were elastic, Pa; above the static flow stress.

@@ -43,7 +43,7 @@ pub struct FourPairs {
     pub kept: Lanes4,
 }
 
-/// What the pairs of a body have beside x_ij and what all pairs have.
+/// Data of the pairs of a body beside x_ij and the data of all pairs.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Extras {
     /// Reference vectors. The squares of the lengths are then all that is known of these: a term takes the
@@ -202,7 +202,7 @@ impl PairBatch {
         self.supports.resize(fours, Lanes4::ZERO);
     }
 
-    /// What the pairs have beside x_ij.
+    /// Data of the pairs beside x_ij.
     #[inline(always)]
     pub(super) fn extras(&self) -> Extras {
         self.extras

@@ -90,7 +90,7 @@ impl BlockPairs {
         &mut self.pairs[..self.count]
     }
 
-    /// What a term sees of a neighbour.
+    /// The pair with a neighbour, as a term reads it.
     #[inline(always)]
     pub(super) fn pair<A: EightLanes>(&self, a: A, pair: &EightPairs) -> Pair<A> {
         let length = Number::new(a, pair.length);
@@ -112,7 +112,7 @@ impl BlockPairs {
     }
 }
 
-/// What a term adds to the particles of a block.
+/// Sums of a term for the particles of a block.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct TermSums {
     /// Force on each, N.

@@ -21,7 +21,7 @@ pub(super) trait RowTerm: Sync {
     fn block(&self, pairs: &BlockPairs, plane: bool, sums: &mut TermSums);
 }
 
-/// What a term writes for the rows of a batch.
+/// Output of a term for the rows of a batch.
 pub(super) struct RowsOut<'a> {
     /// Force of this term on each particle, among those of all terms.
     pub by_term: &'a mut [DVec3],
@@ -177,7 +177,7 @@ impl Chain<'_> {
     }
 }
 
-/// What goes on once all terms are bound.
+/// Continuation once all terms are bound.
 type Continue<'r> = &'r mut dyn FnMut(&Chain<'_>);
 
 /// A pair term whose type is erased.
@@ -185,7 +185,7 @@ pub(super) trait ErasedTerm: Send + Sync {
     /// Columns it reads, those of neighbours as such; not the relative velocity, which whoever runs the term
     /// gives.
     fn access(&self) -> Vec<Access>;
-    /// What it reads of a pair.
+    /// Reads of a pair.
     fn reads(&self) -> PairReads;
     /// Whether it gives density rates.
     fn changes_density(&self) -> bool;

@@ -24,10 +24,10 @@ pub(crate) struct PhaseTerms {
     bodies: BodySet,
     /// The bodies whose density a term changes.
     of_changing_density: BodySet,
-    /// What the terms make, shared with the systems that book their work.
+    /// Forces and rates of the terms, shared with the systems that book their work.
     forces: Shared<Vec<BodyTerms>>,
     sums: Vec<RateBounds>,
-    /// What the terms read of the pairs.
+    /// Reads of the terms from the pairs.
     pub reads: PairReads,
     /// Account of the first term that changes the density.
     pub of_density: Option<String>,
@@ -158,7 +158,7 @@ impl PhaseTerms {
 #[derive(Clone, Copy)]
 pub(crate) struct BoundTerms<'a> {
     chain: &'a Chain<'a>,
-    /// What the terms of the phase read of the pairs.
+    /// Reads of the terms of the phase from the pairs.
     pub reads: PairReads,
     plane: bool,
 }
@@ -197,7 +197,7 @@ impl BoundTerms<'_> {
     }
 }
 
-/// What the terms write for a block: the total force, to which they add, and that of every term.
+/// Output of the terms for a block: the total force, to which they add, and that of every term.
 pub(crate) struct TermRows<'a> {
     pub total: &'a mut [Force],
     by_term: &'a mut [DVec3],

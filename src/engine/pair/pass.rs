@@ -31,7 +31,7 @@ pub trait PairRows: Sync {
     fn fill(&self, rows: Range<usize>, batch: &mut PairBatch);
 }
 
-/// Where a formulation keeps its pairs.
+/// Storage of the pairs of a formulation.
 pub trait PairSource: Send + 'static {
     /// Calls `run` with the pairs of a body, whose kernel values and velocities are there if they are read.
     fn with_rows(
@@ -42,7 +42,7 @@ pub trait PairSource: Send + 'static {
         run: &mut dyn FnMut(&dyn PairRows) -> Result<(), StepError>,
     ) -> Result<(), StepError>;
 
-    /// What it reads, besides columns that every pass over pairs reads.
+    /// Access beyond the columns that every pass over pairs reads.
     fn access(&self) -> Vec<Access> {
         Vec::new()
     }

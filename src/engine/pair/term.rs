@@ -93,7 +93,7 @@ impl<A: Arithmetic> Pair<A> {
     }
 }
 
-/// What a term adds to particle i, lane by lane; the lanes are added up once the row is done.
+/// Contribution of a term to particle i, lane by lane; the lanes are added up once the row is done.
 #[derive(Clone, Copy)]
 pub struct Rates<A: Arithmetic> {
     /// Force on i, N. The force on j must be its exact opposite when the roles are swapped.
@@ -168,7 +168,7 @@ pub trait PairTerm: Send + Sync + 'static {
     );
 }
 
-/// What the terms of a phase read of its pairs.
+/// Reads of the terms of a phase from its pairs.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PairReads {
     /// Kernel values.

@@ -38,7 +38,7 @@ struct BodyPowers {
     power: Power,
 }
 
-/// What the two systems share.
+/// Data shared by the two systems.
 type Powers = Shared<Vec<BodyPowers>>;
 
 /// Adds the booking of the two kicks of what others put into `bodies`.

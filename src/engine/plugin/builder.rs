@@ -42,7 +42,7 @@ pub struct SimBuilder<'s> {
     /// Bodies that selections hold.
     pub(crate) held: RefCell<Vec<BodyId>>,
     pub(crate) handed: HandedIn,
-    /// What systems share by its place.
+    /// Shared values of systems.
     pub(crate) shared: SharedValues,
 }
 

@@ -15,9 +15,9 @@ pub enum SetupError {
         /// Path of the parameter within the item, such as `alpha` or `on.body`; empty for the item as a
         /// whole.
         field: String,
-        /// What was found.
+        /// The finding.
         message: String,
-        /// What would be right.
+        /// The correction.
         help: String,
     },
     /// Faults that already know their place in the scene.

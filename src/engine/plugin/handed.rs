@@ -23,7 +23,7 @@ pub struct ForBodies<T> {
 /// A value for bodies.
 struct Term {
     by: Option<Item>,
-    /// What it is, for errors: `a pair term`.
+    /// Description for errors: `a pair term`.
     what: &'static str,
     /// Bodies whose formulations have not taken it.
     left: BodySet,
@@ -105,7 +105,7 @@ impl HandedIn {
         taken
     }
 
-    /// What is wrong with what nobody has taken.
+    /// Problems of terms and values that nobody has accepted.
     pub fn problems(&self, bodies: &[BodyPlan]) -> Vec<Problem> {
         let place = |by: &Option<Item>, message: String, help: String| match by {
             Some(item) => item.problem("", message, help),

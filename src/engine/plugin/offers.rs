@@ -1,7 +1,7 @@
 //! The kind of bodies that a formulation moves, and the terms it accepts from plugins, conditions and
 //! contacts.
 
-/// What the bodies of a formulation are to the rest of a scene.
+/// Kind of the bodies of a formulation for the rest of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BodyKind {
     /// A deformable solid: particles with a deformation gradient and a stress.
@@ -70,7 +70,7 @@ impl Offer {
         Self::Sides,
     ];
 
-    /// What the formulations of solids with a Lagrangian kernel take.
+    /// Offers of the formulations of solids with a Lagrangian kernel.
     pub const OF_LAGRANGIAN_SOLIDS: &'static [Self] = &[
         Self::PairTerms,
         Self::FoldedTerms,
@@ -83,7 +83,7 @@ impl Offer {
         Self::Sides,
     ];
 
-    /// What it is, in words.
+    /// Description in words.
     pub fn words(self) -> &'static str {
         match self {
             Self::PairTerms => "pair terms",

@@ -26,8 +26,8 @@ pub struct HeldSide {
 }
 
 impl HeldSide {
-    /// What is said of a load or a contact that reaches the side across its normal, such as "`Pressure` on
-    /// the body `b`".
+    /// Warning of a load or a contact that reaches the side across its normal, such as "`Pressure` on the
+    /// body `b`".
     pub fn reached_by(&self, what: &str) -> String {
         let (axis, at) = (["X", "Y", "Z"][self.plane.0], number(self.plane.1));
         format!(
@@ -48,9 +48,9 @@ pub struct BodyPlan {
     pub phase: PhaseId,
     /// Name of its formulation.
     pub formulation: &'static str,
-    /// What it is to the rest of the scene.
+    /// Kind of the body for the rest of the scene.
     pub kind: BodyKind,
-    /// What its formulation takes from plugins, conditions and contacts.
+    /// Offers of its formulation to plugins, conditions and contacts.
     pub offers: &'static [Offer],
     /// Mean support radius of its particles, m; none where these have no neighbours of their own.
     pub support: Option<f64>,

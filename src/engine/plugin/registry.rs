@@ -15,7 +15,7 @@ use crate::materials::{Material, MaterialModel};
 use crate::scene::{Described, Item, Parameter, Problem, Scene, TypeDoc, parameters, unknown};
 use crate::world::{BodyId, ColumnSet};
 
-/// What kind of thing a name of a scene stands for.
+/// Kind of the thing that a name of a scene stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum EntryKind {
     /// A material.
@@ -43,7 +43,7 @@ impl EntryKind {
     }
 }
 
-/// What the registry tells about a name.
+/// Registered facts of a name.
 #[derive(Clone, Debug)]
 pub struct Entry {
     /// Name in scenes.
@@ -57,7 +57,7 @@ pub struct Entry {
 }
 
 impl Entry {
-    /// What it is, in a line or a few.
+    /// Description, in a line or a few.
     pub fn doc(&self) -> &str {
         self.docs.first().map_or("", |own| &own.doc)
     }
@@ -134,7 +134,7 @@ impl Registry {
         self.describe::<F>(EntryKind::Formulation, F::NAME, F::REFERENCE)
     }
 
-    /// What a body of the formulation of that name is.
+    /// Kind of the bodies of the formulation of that name.
     pub fn body_kind(&self, formulation: &str) -> Option<BodyKind> {
         self.formulations.get(formulation).map(|entry| entry.kind)
     }
@@ -255,7 +255,7 @@ impl Registry {
         self.formulations.get(name).ok_or_else(|| self.unknown(EntryKind::Formulation, item))
     }
 
-    /// What [`Registry::add_builder`] was given for a name.
+    /// The value that [`Registry::add_builder`] was given for a name.
     pub(crate) fn builder<B: Any>(&self, kind: EntryKind, item: &Item) -> Result<&B, Vec<Problem>> {
         let named = self.builders.iter().find(|((of, name), _)| *of == kind && *name == item.name());
         let build = named.and_then(|(_, build)| build.downcast_ref());

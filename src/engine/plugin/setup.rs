@@ -4,11 +4,11 @@ use super::error::SetupError;
 use crate::schedule::Resources;
 use crate::world::{BodySet, World};
 
-/// What a set-up step sees.
+/// Interface of a set-up step.
 pub struct Setup<'a> {
     /// Columns and bodies; columns that nobody has filled are zero.
     pub world: &'a World,
-    /// What systems share.
+    /// Shared data of systems.
     pub resources: &'a mut Resources,
     /// Bodies whose particles a selection holds by their rows (see
     /// [`SimBuilder::select`](super::SimBuilder::select)): their rows keep their order.

@@ -10,7 +10,7 @@ use super::plan::BodyPlan;
 use crate::scene::{Edge, Select};
 use crate::world::{BodyId, ColumnSet};
 
-/// What a condition holds, or moves by prescription.
+/// Particles that a condition holds, or moves by prescription.
 #[derive(Clone, Copy, Debug)]
 pub struct Support<'a> {
     /// Particles.
@@ -45,16 +45,16 @@ pub trait Plugin: DeserializeOwned + JsonSchema + 'static {
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError>;
 }
 
-/// How bodies move: the columns of their particles and the systems that make their rates.
+/// A formulation: the columns of its particles and the systems that compute their rates.
 pub trait Formulation: DeserializeOwned + JsonSchema + 'static {
     /// Name in scenes.
     const NAME: &'static str;
     /// Source of the method.
     const REFERENCE: &'static str;
-    /// What its bodies are to the rest of a scene.
+    /// Kind of its bodies for the rest of a scene.
     const KIND: BodyKind;
-    /// What it takes for its bodies from plugins, conditions and contacts. All else that is asked of them is
-    /// an error of the scene.
+    /// Terms that it accepts for its bodies from plugins, conditions and contacts. All else that is asked of
+    /// them is an error of the scene.
     const OFFERS: &'static [Offer];
 
     /// Memory of a particle in columns, neighbours and packed rows while a run starts, B: more particles than

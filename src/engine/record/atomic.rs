@@ -46,9 +46,9 @@ pub enum WriteError {
         path: PathBuf,
         /// The path in the way.
         obstacle: PathBuf,
-        /// What is there.
+        /// The kind found.
         found: &'static str,
-        /// What has to be there.
+        /// The kind expected.
         expected: &'static str,
     },
     /// The user may not write there.
@@ -71,7 +71,7 @@ pub enum WriteError {
     Io {
         /// The file.
         path: PathBuf,
-        /// What the operating system said.
+        /// Error of the operating system.
         source: io::Error,
     },
 }

@@ -76,7 +76,7 @@ pub struct NamedUnit<'a> {
     pub unit: &'a str,
 }
 
-/// What is known of a run before its first frame.
+/// Facts of a run before its first frame.
 #[derive(Clone, Copy, Debug)]
 pub struct RunInfo<'a> {
     /// Title of the scene.
@@ -124,7 +124,7 @@ pub enum RecordError {
     Recorder {
         /// Name of the recorder.
         recorder: String,
-        /// What went wrong.
+        /// The error.
         message: String,
     },
 }

@@ -28,7 +28,7 @@ pub enum SeriesError {
     Read {
         /// The file.
         path: PathBuf,
-        /// What the operating system said.
+        /// Error of the operating system.
         source: io::Error,
     },
     /// The file is no table.
@@ -36,7 +36,7 @@ pub enum SeriesError {
     Malformed {
         /// The file.
         path: PathBuf,
-        /// What was found, where, and what would be right.
+        /// The finding, its place, and the correction.
         what: String,
     },
     /// There is no such column.
@@ -79,7 +79,7 @@ pub enum SeriesError {
     Resume {
         /// The file.
         path: PathBuf,
-        /// What was found and what was expected.
+        /// The value found and the expected one.
         what: String,
     },
     /// The file could not be written.
@@ -217,7 +217,7 @@ fn header(path: &Path, columns: &[(&str, &str)]) -> Result<String, SeriesError> 
     String::from_utf8(bytes).map_err(|error| malformed(error.to_string()))
 }
 
-/// What keeps the file from being continued, if anything does.
+/// Reason why the file cannot be continued, if there is one.
 fn check_resumable(file: &mut File, header: &str, position: u64) -> io::Result<Option<String>> {
     let len = file.metadata()?.len();
     let mut found = Vec::new();

@@ -73,9 +73,9 @@ pub struct RigidBody {
     pub(super) constraint: Constraint,
     /// State.
     pub state: RigidState,
-    /// What contacts have added in this step, about the centre.
+    /// Sum of the contacts of this step, about the centre.
     contact: Wrench,
-    /// What one metre more of all contacts of the step would do, about the centre.
+    /// Stiffness of all contacts of the step, about the centre.
     pub(crate) contact_stiffness: Wrench,
 }
 
@@ -122,7 +122,7 @@ impl RigidBody {
         self.state.velocity + self.state.angular_velocity.cross(place - self.state.center)
     }
 
-    /// How much a force at `place` along `direction` speeds up that point along it, 1/kg.
+    /// Inverse mass at `place` along `direction`, 1/kg.
     #[inline]
     pub fn inverse_mass_at(&self, place: DVec3, direction: DVec3) -> f64 {
         let lever = (place - self.state.center).cross(direction);
@@ -161,7 +161,7 @@ impl RigidBody {
     }
 }
 
-/// What a rigid body is made of.
+/// Parts of a rigid body.
 pub(super) struct RigidParts {
     pub id: BodyId,
     pub mass: f64,

@@ -25,7 +25,7 @@ pub trait Drive: Send + Sync {
 pub struct DrivenBody {
     /// Body.
     pub body: BodyId,
-    /// What the condition prescribes.
+    /// The prescription of the condition.
     pub motion: Prescription,
     /// Axes that it prescribes.
     pub axes: [bool; 3],
@@ -64,7 +64,7 @@ pub(super) enum Turning {
     Driven(DrivenRotation),
 }
 
-/// What of the motion of a body is prescribed.
+/// The prescribed part of the motion of a body.
 pub(super) struct Constraint {
     pub drives: Vec<DrivenBody>,
     pub turning: Turning,

@@ -7,7 +7,7 @@ use crate::plugin::BodyPlan;
 use crate::scene::Dimension;
 use crate::shapes::{Moments, Shape, Surface};
 
-/// What a rigid body weighs.
+/// Mass, centre and inertia of a rigid body.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MassProperties {
     /// Mass, kg; in two dimensions per metre of thickness.

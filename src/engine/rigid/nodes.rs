@@ -13,7 +13,7 @@ use crate::space::Dimension;
 /// Cosine of the angle between two normals above which two faces do not touch: some 96 degrees.
 const ACROSS: f64 = -0.1;
 
-/// What touches at a node.
+/// Shape of a node.
 #[derive(Clone, Copy, Debug)]
 pub enum Round {
     /// The point itself.
@@ -31,7 +31,7 @@ pub struct RigidNode {
     pub point: DVec3,
     /// Outward normal of the surface there; zero on edges and corners, and for what is round.
     normal: DVec3,
-    /// What touches there.
+    /// Shape of the node.
     pub round: Round,
     /// Length that it stands for, m.
     pub size: f64,

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::world::BodyId;
 
-/// What kind of energy an account holds.
+/// Kind of the energy in an account.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum AccountKind {
     /// Energy held now: kinetic, strain, hourglass.
@@ -24,7 +24,7 @@ pub const INTO_HEAT: &str = "into_heat";
 pub struct EnergyAccount {
     /// Name of the account.
     pub name: &'static str,
-    /// What its energies are.
+    /// Kind of its energies.
     pub kind: AccountKind,
 }
 
@@ -36,7 +36,7 @@ pub struct Account {
     /// Kind.
     pub kind: AccountKind,
     per_body: Vec<f64>,
-    /// What each system has stated, by its number.
+    /// Values stated by each system, by its number.
     stated: Vec<(u32, Vec<f64>)>,
 }
 
@@ -165,7 +165,7 @@ impl Ledger {
         self.largest
     }
 
-    /// What the ledger cannot account for, J.
+    /// The balance error, J.
     pub fn balance_error(&self) -> f64 {
         self.stored() - self.stored_at_start - self.supplied() + self.total_of(AccountKind::Dissipated)
     }

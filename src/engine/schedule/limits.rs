@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 pub struct Limit {
     /// Largest stable step, s.
     pub dt: f64,
-    /// What limits it, such as `wave speed of plate`.
+    /// Name of the limit, such as `wave speed of plate`.
     pub by: String,
 }
 

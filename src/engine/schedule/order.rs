@@ -102,7 +102,7 @@ impl Schedule {
         Ok(())
     }
 
-    /// What every system has declared of the columns, in their order.
+    /// Declared access of every system to the columns, in their order.
     pub fn declared(&self) -> Vec<Declared> {
         self.systems.iter().map(System::declared).collect()
     }

@@ -62,9 +62,9 @@ impl SharedValues {
 pub struct Resources {
     by_type: BTreeMap<(TypeId, Option<PhaseId>), RefCell<Box<dyn Any + Send>>>,
     shared: Vec<RefCell<Box<dyn Any + Send>>>,
-    /// What exchanges packed rows among ranks.
+    /// Exchanges of packed rows among ranks.
     completed_by: Vec<fn(&Resources)>,
-    /// What holds the accesses of systems against what they have declared.
+    /// The check of accesses against declarations.
     watch: Option<Arc<Watch>>,
 }
 

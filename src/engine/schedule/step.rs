@@ -33,8 +33,8 @@ impl Clock {
     }
 }
 
-/// What a system sees: the columns, what systems share, the clock, the ledger, the limits of the next time
-/// step.
+/// Interface of a running system: the columns, shared data, the clock, the ledger, the limits of the next
+/// time step.
 pub struct Step<'s> {
     /// Columns and bodies.
     pub world: &'s World,
@@ -46,7 +46,7 @@ pub struct Step<'s> {
     pub ledger: &'s mut Ledger,
     /// Limits of the next time step.
     pub limits: &'s mut TimeStepLimits,
-    /// What the user should look at; repeated at the end of the run.
+    /// Warnings for the user; repeated at the end of the run.
     pub warnings: &'s mut Vec<String>,
     /// Which part of the step this is: a system that is [`by_body`](super::System::by_body) asks it for the
     /// bodies that are due.
@@ -67,7 +67,7 @@ pub enum StepError {
     /// A particle has left the range of what makes sense.
     #[error("{what} at particle {particle} of body `{body}`, step {step}, time {}{detail}", quantity_to(*.time, "s", 6))]
     Unstable {
-        /// What went wrong.
+        /// The error.
         what: String,
         /// Number of the particle in its body.
         particle: usize,
@@ -77,7 +77,7 @@ pub enum StepError {
         step: u64,
         /// Time, s.
         time: f64,
-        /// What is known about the cause; empty, or starting with `: `.
+        /// The cause, if known; empty, or starting with `: `.
         detail: String,
     },
     /// The bodies hold far more energy than they were given.
@@ -103,10 +103,10 @@ pub enum StepError {
         step: u64,
         /// Time, s.
         time: f64,
-        /// What else may help; empty, or starting with `; `.
+        /// Further advice; empty, or starting with `; `.
         advice: String,
     },
-    /// What the run writes could not be written.
+    /// An output of the run could not be written.
     #[error("{0}")]
     Output(String),
     /// A system of a plugin failed.
@@ -114,7 +114,7 @@ pub enum StepError {
     System {
         /// Label of the system.
         system: String,
-        /// What went wrong.
+        /// The error.
         message: String,
     },
 }

@@ -9,7 +9,7 @@ use super::step::{Step, StepError};
 use super::step_part::Cadence;
 use crate::world::{Access, BodySet, Column, Declared, Mode, PhaseId};
 
-/// What a system does. A closure is enough for a system without state of its own.
+/// The work of a system. A closure is enough for a system without state of its own.
 pub trait Run: Send {
     /// Does the system's work in this step.
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError>;
@@ -259,7 +259,7 @@ impl System {
         &self.access
     }
 
-    /// What it has declared of the columns, and of what systems share.
+    /// Declared access to columns and shared data.
     pub(super) fn declared(&self) -> Declared {
         let access = (!self.reads_all).then(|| self.access.iter().chain(&self.packed).copied().collect());
         Declared { system: self.label.clone(), access }

@@ -12,7 +12,7 @@ use crate::scene::Source;
 const BALANCE_WARNING: f64 = 1e-2;
 
 impl Simulation {
-    /// What it writes, if it writes anything.
+    /// The output, if there is one.
     pub(super) fn output(&self) -> Option<RefMut<'_, Output>> {
         self.output.map(|place| self.resources.of_mut(place))
     }

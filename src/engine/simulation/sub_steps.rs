@@ -21,7 +21,7 @@ pub(super) struct SubSteps {
     factor: f64,
     /// Whether the long step takes more than one.
     pub divided: bool,
-    /// What a checkpoint keeps.
+    /// State in a checkpoint.
     pub state: SubStepState,
 }
 
@@ -76,14 +76,13 @@ impl SubSteps {
 }
 
 impl Simulation {
-    /// How many sub-steps the last step has taken, and how many there have been since time 0; none where no
-    /// body is sub-cycled.
+    /// Number of sub-steps in the last step, and since time 0; none where no body is sub-cycled.
     pub fn sub_steps(&self) -> Option<(u32, u64)> {
         let SubStepState { last, total, .. } = self.sub_steps.state;
         (!self.sub_steps.phases.is_empty()).then_some((last, total))
     }
 
-    /// What limits the sub-steps, where there are any.
+    /// The limit of the sub-steps, where there are any.
     pub fn short_limit(&self) -> Option<&Limit> {
         self.sub_steps.state.next.as_ref()
     }

@@ -12,7 +12,7 @@ use crate::record::output::Extreme;
 use crate::scene::Precision;
 use crate::world::{Body, BodyId, Removed};
 
-/// How a run has ended.
+/// Outcome of a run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "how", content = "why")]
 pub enum Outcome {
@@ -26,14 +26,14 @@ pub enum Outcome {
     Failed(String),
 }
 
-/// What a run has come to.
+/// Results of a run.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
     /// Title of the scene.
     pub title: String,
     /// Values of the parameters of the scene.
     pub parameters: BTreeMap<String, f64>,
-    /// How it has ended.
+    /// Outcome.
     pub outcome: Outcome,
     /// Time reached, s.
     pub time: f64,
@@ -45,7 +45,7 @@ pub struct Summary {
     pub short_steps: Option<u64>,
     /// Length of the last step, s.
     pub last_dt: f64,
-    /// What limits the time step.
+    /// Limit of the time step.
     pub limited_by: Option<String>,
     /// Number of particles.
     pub particles: usize,
@@ -68,13 +68,13 @@ pub struct Summary {
     pub energies: BTreeMap<String, f64>,
     /// Energies of each body, J.
     pub energies_of: BTreeMap<String, BTreeMap<String, f64>>,
-    /// What the energy ledger cannot account for, J.
+    /// The balance error, J.
     pub balance_error: f64,
     /// The same over the largest energy that any account has held.
     pub relative_error: f64,
     /// Least, largest and last value of every column of every probe, with their times.
     pub probes: BTreeMap<String, Vec<Extreme>>,
-    /// What the user should look at.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
     /// Sources of the methods in use.
     pub references: Vec<String>,
@@ -111,7 +111,7 @@ impl Throughput {
 }
 
 impl Simulation {
-    /// What the run has come to so far.
+    /// The results of the run so far.
     pub fn summary(&self) -> Summary {
         let (wall_seconds, steps) = self.pace.since(self.clock.step);
         let particles = self.world.len();

@@ -83,7 +83,7 @@ impl SkinView<'_> {
         (self.gradient[self.first_row + carrier.particle as usize].0 * arm_from_middle).length()
     }
 
-    /// What the shares of a vertex are made of, if they follow the deformation.
+    /// Scale of the shares of a vertex, if they follow the deformation.
     pub(super) fn scale(&self, vertex: u32) -> Option<Scale> {
         let distances = self.skin.carriers(vertex).iter().map(|carrier| self.distance(carrier));
         self.skin.reach.map(|reach| Scale::of(distances, reach))
@@ -104,8 +104,8 @@ impl SkinView<'_> {
         self.skin.maps[map as usize].vector(vector)
     }
 
-    /// How much a traction moves the layer of particles at a vertex along each axis, m2/kg (m/kg in two
-    /// dimensions).
+    /// Inverse mass of the layer of particles at a vertex under a traction along each axis, m2/kg (m/kg in
+    /// two dimensions).
     pub fn mobility(&self, vertex: u32) -> DVec3 {
         self.mean(vertex, DVec3::ZERO, |share, carrier, row| {
             self.mobility[row].0 * (share * self.skin.layer[carrier.particle as usize])

@@ -21,7 +21,7 @@ use super::columns::SkinView;
 use super::vertex::{End, Vertex};
 use crate::parallel::for_each_block;
 
-/// How a vertex acts on a carrier in this step.
+/// Share of a carrier in a vertex in this step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct FollowingShare {
     pub(super) share: f64,

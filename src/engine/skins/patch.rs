@@ -27,7 +27,7 @@ impl Last {
     const UNKNOWN: Self = Self { place: DVec3::NAN, gradient: DMat3::NAN };
 }
 
-/// What is to be computed beside places and velocities.
+/// Quantities to be computed beside positions and velocities.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Wanted {
     pub mobility: bool,
@@ -35,7 +35,7 @@ pub(crate) struct Wanted {
     pub gradients: bool,
 }
 
-/// What is handed on to particles.
+/// Forces passed on to particles.
 #[derive(Clone, Copy)]
 struct HandedOn<'a> {
     skin: &'a Skin,
@@ -117,7 +117,7 @@ impl HandedOn<'_> {
         (force, couple)
     }
 
-    /// What the couples on vertices are for a particle at these ends, N m.
+    /// Sum of the couples on vertices for a particle at these ends, N m.
     fn of_vertices(&self, ends: &[End]) -> DMat3 {
         let couples = self.couples.unwrap_or_default();
         let of = |end: &End| {

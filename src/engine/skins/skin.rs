@@ -38,7 +38,7 @@ pub(crate) struct Skin {
     pub(super) facets_at: Vec<u32>,
     pub(super) starts: Vec<u32>,
     pub(super) carriers: Vec<Carrier>,
-    /// What carriers are images by; the first map changes nothing.
+    /// Maps of the images of carriers; the first map is the identity.
     pub(super) maps: Vec<Map>,
     /// Largest of the particles' lengths (areas) in a layer over their masses, m2/kg (m/kg in two
     /// dimensions).
@@ -136,7 +136,7 @@ impl Skin {
         self.moved.get(particle as usize).map_or(arm, |moved| arm + *moved)
     }
 
-    /// What a carrier is an image by.
+    /// Map of the image of a carrier.
     #[inline]
     pub(super) fn map(&self, carrier: &Carrier) -> &Map {
         &self.maps[carrier.map as usize]

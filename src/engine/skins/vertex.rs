@@ -14,11 +14,11 @@ pub(crate) struct Vertex {
     /// Deformation gradient, and its rate at mid-step, 1/s; if asked for.
     pub gradient: DMat3,
     pub rate: DMat3,
-    /// How much a traction moves the layer of particles there along each axis, m2/kg; if asked for.
+    /// Inverse mass of the layer of particles there under a traction along each axis, m2/kg; if requested.
     pub mobility: DVec3,
     /// Whether all that carries it is there.
     pub is_there: bool,
-    /// What its shares are made of, if they follow the deformation.
+    /// Scale of its shares, if they follow the deformation.
     pub(super) scale: Scale,
 }
 

@@ -31,7 +31,7 @@ pub struct SolidBody {
     pub law: Arc<dyn SolidLaw>,
     /// The state columns of its law.
     state: StateColumns,
-    /// What its stable step depends on.
+    /// Estimate of its stable step.
     pub estimate: StepEstimate,
     /// Its folded terms.
     terms: Vec<usize>,
@@ -56,7 +56,7 @@ pub struct SolidBodies {
     /// Columns of state beside deformation gradient and stress.
     pub(super) columns: ColumnSet,
     pub(super) can_fail: bool,
-    /// What the last pass has found in each body.
+    /// Results of the last pass for each body.
     found: Vec<SolidSum>,
     sums: Vec<SolidSum>,
 }
@@ -196,7 +196,7 @@ impl SolidBodies {
         self.bodies[k].id
     }
 
-    /// What the last pass has found in each body.
+    /// Results of the last pass for each body.
     pub fn found(&self) -> &[SolidSum] {
         &self.found
     }
@@ -354,7 +354,7 @@ impl SolidBodies {
         Ok(())
     }
 
-    /// What a checkpoint keeps of the bodies: for [`Run::save`](crate::schedule::Run::save).
+    /// State of the bodies in a checkpoint: for [`Run::save`](crate::schedule::Run::save).
     pub fn save(&self) -> Vec<u8> {
         postcard::to_stdvec(&self.stretch_factors()).unwrap_or_default()
     }

@@ -16,7 +16,7 @@ use crate::world::{
     PiolaStress,
 };
 
-/// What is said of a particle that has turned inside out, and what to do about it.
+/// Message of an inverted particle, and advice.
 pub(super) const CRUSHED: [&str; 2] = [
     "negative volume (det F <= 0)",
     ": its material cannot bear what presses or twists it there. Debris that a fluid or a tool crushes is taken out by \
@@ -26,7 +26,7 @@ pub(super) const CRUSHED: [&str; 2] = [
 /// Largest number of folded terms on one body.
 pub(super) const MAX_TERMS: usize = 4;
 
-/// What the pass over a body learns of it.
+/// Sums of the pass over a body.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
 pub struct SolidSum {
@@ -181,7 +181,7 @@ pub struct SolidRows<'a> {
 
 split_by_rows!(SolidRows { deformation, stress, state, memory, damping });
 
-/// What is known of a block of particles on its way through the pass. The formulation fills gradient,
+/// Data of a block of particles in the course of the pass. The formulation fills gradient,
 /// residual and volume.
 pub struct SolidBlock {
     /// Row of its first particle in the phase.

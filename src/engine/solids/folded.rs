@@ -24,7 +24,7 @@ pub struct FoldedRows<'a> {
     pub modulus: &'a [f64],
     /// Stress beyond which a particle that has yielded flows, Pa; infinite for all that has not yielded.
     pub strength: &'a [f64],
-    /// What terms leave in columns.
+    /// Values of terms stored in columns.
     pub memory: FoldedMemory<'a>,
     /// Error of the mean deformation, `sum_j V_j w_ij |F_i X_ij - x_ij|^2`, m2 times the unit of V w.
     pub residual: &'a [f64],
@@ -50,9 +50,8 @@ impl FoldedRows<'_> {
     }
 }
 
-/// What terms leave in columns: modulus and error of the mean deformation of the last step, for terms that
-/// become softer on the way, and the fit for pair terms. A slice is empty where no plugin has added its
-/// column.
+/// Values of terms stored in columns: modulus and hourglass residual of the last step, for terms that soften,
+/// and the fit for pair terms. A slice is empty where no plugin has added its column.
 #[derive(Default)]
 pub struct FoldedMemory<'a> {
     /// Modulus, Pa: column [`HourglassModulus`](crate::world::HourglassModulus); zero before the first step.
@@ -78,7 +77,7 @@ impl FoldedMemory<'_> {
 
 split_by_rows!(FoldedMemory { modulus, residual, gradient });
 
-/// What a folded term tells of the energy of a block, J.
+/// Energy of a folded term in a block, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct FoldedEnergy {

@@ -16,7 +16,7 @@ use glam::{DMat3, DVec3};
 
 use crate::world::{Mobility, Velocity};
 
-/// How the points of the material beside a particle move, and how much a force on them moves them.
+/// Motion of the material points beside a particle, and their response to a force.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LocalMotion {
     /// Of the particle, m/s.

@@ -7,7 +7,7 @@
 use crate::column;
 
 column! {
-    /// What the sums over neighbours have taken up of the losses of a solid: 1 for a particle that has been
+    /// Losses of a solid that the sums over neighbours already leave out: 1 for a particle that has been
     /// removed, 2 for one that has failed, 3 for both.
     pub struct TakenUp(u32) = "losses_taken_up", "-", "1";
 }

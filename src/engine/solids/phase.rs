@@ -10,10 +10,10 @@ use crate::schedule::{Resources, Shareable};
 use crate::symmetry::Ghosts;
 use crate::world::{Mobility, PhaseId, Velocity};
 
-/// What a formulation packs of the particles of a solid: pair vectors, weights, lists, fits. In the access of
+/// Packed data of the particles of a solid: pair vectors, weights, lists, fits. In the access of
 /// systems.
 pub const PACKED_SOLID: &str = "packed_solid";
-/// What neighbours read of the stress of a particle, A = P M^-1
+/// Record of the stress of a particle for its neighbours, A = P M^-1
 /// ([`CorrectedStress`](super::CorrectedStress)). In the access of systems.
 pub const CORRECTED_STRESS: &str = "corrected_stress";
 
@@ -40,8 +40,8 @@ pub trait SolidPhase: Any + Send + Sync {
         false
     }
 
-    /// How the points of the material beside a particle move, with the velocities of all rows; where
-    /// velocities beside the particle are not asked for (`moving`), they are not computed.
+    /// Motion of the material points beside a particle, with the velocities of all rows; where velocities
+    /// beside the particle are not requested (`moving`), they are not computed.
     fn local_motion(
         &self,
         row: usize,

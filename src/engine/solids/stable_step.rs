@@ -19,7 +19,7 @@ const HESSIAN_FACTOR: f64 = 3.0;
 /// Share of the estimated critical step that is used.
 const SAFETY: f64 = 0.65;
 
-/// What the stable step of a particle depends on.
+/// Quantities that determine the stable step of a particle.
 #[derive(Clone, Copy, Debug)]
 pub struct StepEstimate {
     /// Squared speed of longitudinal waves c_l^2, m2/s2.

@@ -7,7 +7,7 @@ use crate::notation::number;
 use crate::plugin::{BodyPlan, SetupError, SimBuilder};
 use crate::scene::{Axis, Domain};
 
-/// What a body repeats itself by.
+/// Symmetry plane or period of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Repeat {
     /// A mirror plane at a coordinate, m.
@@ -114,8 +114,8 @@ pub fn repeats_of(body: &BodyPlan, support: f64, sim: &SimBuilder<'_>) -> Result
     Ok(repeats)
 }
 
-/// What a body may be shorter than a period that it fills, over its spacing. A body that ends before the
-/// period does is not joined to itself.
+/// Tolerance by which a body may be shorter than a period that it fills, over its spacing. A body that ends
+/// before the period does is not joined to itself.
 const FILLS: f64 = 0.5;
 
 /// The length of the domain along an axis, and that of a body, m.

@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use super::column::Column;
 
-/// How a system touches a column.
+/// Kind of access of a system to a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
     /// It reads the column.
@@ -45,7 +45,7 @@ impl Mode {
 pub struct Access {
     /// Name of the column.
     pub column: &'static str,
-    /// How it is touched.
+    /// Kind of access.
     pub mode: Mode,
 }
 
@@ -58,7 +58,7 @@ impl Access {
     }
 }
 
-/// What a system has declared of the columns, and of what systems share.
+/// Declared access of a system to columns and shared data.
 #[derive(Clone, Debug)]
 pub struct Declared {
     /// Label of the system.
@@ -73,9 +73,9 @@ pub struct Declared {
 pub struct Undeclared {
     /// Label of the system.
     pub system: String,
-    /// What it touches, in words.
+    /// Accessed data, in words.
     pub what: String,
-    /// What declares it.
+    /// The missing declaration.
     pub declaration: String,
 }
 

@@ -6,7 +6,7 @@ use glam::{DMat3, DVec3};
 use crate::linalg::Sym3;
 use crate::parallel::{Arithmetic, FourLanes, Lanes4, Matrix, Number, Vector};
 
-/// What one row of a column holds: a number, a vector, a tensor, seen as a fixed list of components.
+/// Value of one row of a column: a number, a vector, a tensor, as a fixed list of components.
 pub trait Value: Pod + Send + Sync + 'static {
     /// Names of the components, in the order in which [`Value::component`] counts; `[""]` for a number.
     const COMPONENTS: &'static [&'static str];
@@ -201,7 +201,7 @@ pub trait Column: Pod + Send + Sync + 'static {
     const SYMBOL: &'static str;
     /// Unit in SI, such as `m/s`; `1` for a pure number.
     const UNIT: &'static str;
-    /// What it is, as its documentation says.
+    /// Description, from its documentation.
     const ABOUT: &'static str;
 
     /// The value of the row.

@@ -17,7 +17,7 @@ pub struct ColumnInfo {
     pub symbol: &'static str,
     /// Unit, SI.
     pub unit: &'static str,
-    /// What it is.
+    /// Description.
     pub about: &'static str,
     /// Names of the components of a row.
     pub components: &'static [&'static str],

@@ -124,7 +124,7 @@ impl World {
         self.watch = Arc::new(Watch::new(systems));
     }
 
-    /// What notes the accesses of systems; what they share asks it too.
+    /// The record of accesses of systems, also for shared data.
     pub(crate) fn watch(&self) -> Arc<Watch> {
         Arc::clone(&self.watch)
     }

@@ -43,7 +43,7 @@ fn abrasive_flow(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     Ok(checks(&worn?))
 }
 
-/// What a run has come to.
+/// Results of a run.
 struct WornRun {
     /// Area worn off the rectangle, over its area.
     area: f64,

@@ -17,7 +17,7 @@ pub(crate) const CASE: Case = Case {
     run: closed_box,
 };
 
-/// What a run shows.
+/// Results of a run.
 struct BoxRun {
     /// Largest change of momentum since the start, over that at the start.
     lost: f64,

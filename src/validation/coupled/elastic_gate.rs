@@ -98,7 +98,7 @@ fn wet(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     ])
 }
 
-/// What the gate in water shows.
+/// Results for the gate in water.
 struct Flood {
     /// Largest displacement of its lower corner to the side and up, m.
     moved: [f64; 2],

@@ -35,7 +35,7 @@ const IMPULSE: f64 = 0.2;
 /// could be found for every wish.
 const PEAKS: [f64; 3] = [0.4, 0.2, 0.2];
 
-/// What the sensors P1 to P4 show, Pa, and the gauges H2 and H4, m.
+/// Histories of the sensors P1 to P4, Pa, and of the gauges H2 and H4, m.
 struct BoxHistories {
     pressure: [Record; 4],
     level: [Record; 2],

@@ -26,7 +26,7 @@ const SPEED: f64 = 5.0;
 const WAVE: f64 = 166.66667;
 const SOURCE: &str = "d'Alembert";
 
-/// What is seen of a run.
+/// Results of a run.
 struct BarMotion {
     /// Displacement of the free end, over v0 L / c.
     end: Record,
@@ -120,6 +120,6 @@ fn elastic_bar(registry: &Registry, along: usize) -> Result<Vec<Check>> {
     Ok(checks)
 }
 
-/// What keeps the bar in order.
+/// Stabilizers of the bar.
 const STABILIZERS: [(&str, &str); 2] =
     [("Hessian", "hessian_stabilization()"), ("hourglass", "hourglass_control()")];

@@ -38,7 +38,7 @@ const DEFAULT: f64 = 5.0;
 /// One that keeps particles in their places over hundreds of periods.
 const STIFF: f64 = 25.0;
 
-/// What is seen on the way.
+/// Histories of a run.
 struct PatchHistory {
     /// Mean of det F over the volume.
     dilatation: Record,
@@ -117,7 +117,7 @@ impl PatchHistory {
     }
 }
 
-/// How the patch is held together.
+/// Hourglass control of the patch.
 #[derive(Clone, Copy)]
 enum PatchControl {
     /// With this coefficient, and the formulation of the registry.

@@ -14,7 +14,7 @@ use crate::template::Template;
 pub(crate) const CASE: Case =
     Case { id: "S4", title: "punch", resolutions: &[16, 22, 44], ci_resolution: 22, run: punch };
 
-/// What the block shows at a compression.
+/// State of the block at a compression.
 struct PunchStage {
     compression: f64,
     /// Reaction, N per metre of thickness: corner radius and mesh to zero.
@@ -80,7 +80,7 @@ fn punch(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     Ok(checks)
 }
 
-/// What a run has shown, each over the compression.
+/// Results of a run, each over the compression.
 struct PunchRun {
     /// N per metre.
     reactions: Vec<(f64, f64)>,

@@ -23,7 +23,7 @@ pub(crate) const CASE: Case = Case {
 const STABILIZERS: [(&str, &str); 2] =
     [("Hessian", "hessian_stabilization(eta: 1.4)"), ("hourglass", "hourglass_control(alpha: 10.0)")];
 
-/// What is left at the end.
+/// The block at the end.
 struct PressedBlock {
     /// Whether the run has reached its end.
     completed: bool,

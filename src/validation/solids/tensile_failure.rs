@@ -25,7 +25,7 @@ const LIMIT: f64 = 0.08;
 /// How much narrower the middle is than the ends.
 const WAIST: f64 = 0.05;
 
-/// What is seen of a break.
+/// Results of a break.
 struct Break {
     /// Elongation of the gauge when the first particle has failed, m.
     first: f64,

@@ -18,7 +18,7 @@ const CLOSED: f32 = 1.7;
 /// Steps of smoothing.
 const ROUNDS: usize = 2;
 
-/// What is seen in a pixel.
+/// The particle or surface visible in a pixel.
 #[derive(Clone, Copy)]
 struct SeenPixel {
     /// Distance along the line of sight \[m\].

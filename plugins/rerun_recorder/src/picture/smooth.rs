@@ -12,7 +12,7 @@ const REACH: f32 = 4.0;
 /// there.
 const AT_SURFACE: f32 = 0.5;
 
-/// What the particles give to a pixel.
+/// Sums of the contributions of particles to a pixel.
 #[derive(Clone, Copy, Default)]
 struct Sum {
     /// Density of the particles, over that inside of a body.

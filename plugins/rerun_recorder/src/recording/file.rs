@@ -88,7 +88,7 @@ impl RecordingFile {
     }
 }
 
-/// What the error is to the user.
+/// The error as shown to the user.
 fn of(path: &Path, error: EncodeError) -> RerunError {
     RerunError::File(WriteError::new(
         path,

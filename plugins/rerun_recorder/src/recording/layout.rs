@@ -19,17 +19,17 @@ use super::paths;
 use super::series::{Plot, SeriesTable};
 use crate::camera::{Bounds, Eye};
 
-/// What the layout depends on.
+/// Input of the layout.
 pub struct Layout {
     /// Title of the scene.
     pub title: String,
     /// Plane or space.
     pub dimension: Dimension,
-    /// What points up.
+    /// The upward direction.
     pub up: [f64; 3],
     /// The bodies by name.
     pub bodies: Vec<String>,
-    /// What the colours mean: name of the field, if there is one.
+    /// Name of the field of the colours, if there is one.
     pub colors: Option<String>,
     /// Bodies that are drawn as surfaces.
     pub surfaces: Vec<String>,
@@ -93,7 +93,7 @@ impl Layout {
         blueprint.container(ContainerKind::Vertical, &tiles)
     }
 
-    /// What is drawn of a body: its particles, or its surface.
+    /// The entity drawn for a body: its particles, or its surface.
     fn shown(&self, body: &str) -> EntityPath {
         let as_surface = self.surfaces.iter().any(|name| name == body);
         if as_surface { paths::surface(body) } else { paths::body(body) }

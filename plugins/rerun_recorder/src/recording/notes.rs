@@ -11,7 +11,7 @@ pub struct Notes {
 }
 
 impl Notes {
-    /// What is known at the start.
+    /// Facts known at the start.
     pub fn new(run: &RunInfo<'_>) -> Self {
         let mut text = format!("# {}\n\nScene `{}`", run.title, run.scene_name);
         // Writing into a string cannot fail.

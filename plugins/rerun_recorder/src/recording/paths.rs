@@ -42,12 +42,12 @@ pub fn scene() -> EntityPath {
     entity(["scene"])
 }
 
-/// What is worth knowing of the run.
+/// Notes on the run.
 pub fn notes() -> EntityPath {
     entity(["notes"])
 }
 
-/// What explains the colours.
+/// Legend of the colours.
 pub fn legend() -> EntityPath {
     entity(["legend"])
 }

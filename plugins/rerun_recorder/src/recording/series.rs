@@ -15,11 +15,11 @@ use super::paths;
 /// A plot of time series.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Plot {
-    /// What is plotted, with its unit.
+    /// The plotted quantity, with its unit.
     pub title: String,
     /// The series, and all beneath them.
     pub include: Vec<EntityPath>,
-    /// What is not drawn of these.
+    /// Entities of these that are not drawn.
     pub exclude: Vec<EntityPath>,
     /// Whether the curves need names.
     pub has_legend: bool,
@@ -30,8 +30,7 @@ pub struct Plot {
 pub struct SeriesTable {
     bodies: Vec<String>,
     known: Vec<(String, String)>,
-    /// What has come since the last time that it was sent, series by series: one piece costs little more than
-    /// one value.
+    /// Values since the last transmission, series by series: one piece costs little more than one value.
     pending: BTreeMap<String, Vec<TimedValue>>,
     /// Accounts that have been nothing but zero.
     idle: BTreeSet<String>,
@@ -304,7 +303,7 @@ fn parts(plot: Plot) -> Vec<Plot> {
     plot.include.chunks(MOST_CURVES).enumerate().map(part).collect()
 }
 
-/// What is drawn together.
+/// Plots by the series drawn together.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum PlotGroup {
     /// Energies of all bodies together.

@@ -111,7 +111,7 @@ fn located(node: &Node, message: &str) -> Problem {
 
 const A_LIST: &str = "a list `[...]`";
 
-/// What serde calls a type, in the words of a scene.
+/// The type in the words of a scene, from that of serde.
 fn in_words(expected: &dyn Expected) -> String {
     let expected = expected.to_string();
     match expected.as_str() {

@@ -363,7 +363,7 @@ impl<'a> Deserializer<'a> for NodeValue<'a> {
     }
 }
 
-/// What is expected where a variant stands.
+/// The expected alternatives where a variant stands.
 fn one_of(name: &str, variants: &[&str]) -> String {
     let known: Vec<_> = variants.iter().map(|variant| format!("`{variant}`")).collect();
     format!("one of {} for this {name}", known.join(", "))

@@ -5,7 +5,7 @@ pub(super) const VARIABLES: [&str; 4] = ["x", "y", "z", "t"];
 
 pub(super) const CONSTANTS: [(&str, f64); 2] = [("pi", std::f64::consts::PI), ("e", std::f64::consts::E)];
 
-/// What expressions may name, with its meaning.
+/// Names allowed in expressions, with their meaning.
 pub(in crate::scene) const MEANINGS: [(&str, &str); 30] = [
     ("x", "first coordinate [m]"),
     ("y", "second coordinate [m]"),

@@ -19,7 +19,7 @@ pub enum MeshFault {
     NotStl {
         /// Length of the file in bytes.
         size: usize,
-        /// What a binary file with its number of triangles would have, in bytes.
+        /// Size of a binary file with its number of triangles, in bytes.
         expected: u64,
     },
     /// A line that cannot be read.
@@ -27,7 +27,7 @@ pub enum MeshFault {
     Line {
         /// Line, counted from 1.
         line: usize,
-        /// What was found and what would be right.
+        /// The finding and the correction.
         message: String,
     },
     /// A coordinate that is infinite or not a number.
@@ -74,7 +74,7 @@ pub enum MeshFault {
 }
 
 impl MeshFault {
-    /// What would be right.
+    /// The correction.
     pub(in crate::shapes) fn help(&self) -> &'static str {
         match self {
             Self::Extension => "export the part as STL (ASCII or binary) or as OBJ",

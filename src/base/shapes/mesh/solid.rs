@@ -8,7 +8,7 @@ use super::topology::Triangles;
 use super::tree::Tree;
 use crate::shapes::region::{Aabb, Region};
 
-/// What a closed mesh holds.
+/// Volume and moments of a closed mesh.
 pub(in crate::shapes) struct MeshSolid {
     pub(super) triangles: Triangles,
     pub(super) normals: Normals,

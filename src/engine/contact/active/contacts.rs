@@ -125,7 +125,7 @@ impl<T: Copy + Default + Send + Sync, P: Copy + Default + Send + Sync, E: BlockS
         &self.numbers
     }
 
-    /// What they do.
+    /// Their forces.
     pub fn pushes(&self) -> &[P] {
         &self.pushes
     }

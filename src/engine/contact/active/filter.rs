@@ -6,12 +6,12 @@ use crate::parallel::{BLOCK, BlockSum, Split, block_count, for_each_block, for_e
 /// microseconds beside a mesh.
 pub(super) const BLOCKS_OF_TEST: usize = 4;
 
-/// What the test of a block has found.
+/// Result of the test of a block.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Found<E> {
     /// How many have passed; they come first in the slots of the block.
     pub count: usize,
-    /// What else the test tells.
+    /// Additional results of the test.
     pub extra: E,
 }
 

@@ -21,7 +21,7 @@ pub(in crate::contact) enum ContactEnd {
     Second,
 }
 
-/// What a contact does to one of its particles.
+/// Force of a contact on one of its particles.
 #[derive(Clone, Copy, Default)]
 pub(in crate::contact) struct NodeLoad {
     /// Force on the particle, N, and on which point beside it, in the reference configuration, m.

@@ -15,10 +15,10 @@ use crate::world::{
     BodyId, DeformationGradient, MissingColumn, Mobility, Position, Removed, Velocity, World,
 };
 
-/// What a contact of particles means for a body that slides.
+/// Note on contact of particles for a sliding body.
 pub(in crate::contact) const BUMPS: &str = "what slides on particles meets bumps: tangential forces of up to a third of the normal force, with and without friction";
 
-/// What the particles of a body bring into contact.
+/// Contact data of the particles of a body.
 #[derive(Clone)]
 pub(in crate::contact) struct MemberParticles {
     pub body: BodyId,
@@ -166,7 +166,7 @@ impl Members<'_> {
         self.body.is_some_and(|body| body.holds_together(self.first_row + i, self.first_row + j))
     }
 
-    /// What has become of a particle.
+    /// Current shape of a particle.
     pub fn shape(&self, i: usize) -> Shape {
         (self.radius[i], self.gradient.map(|f| f[self.first_row + i].0))
     }
@@ -176,7 +176,7 @@ impl Members<'_> {
         self.gradient.map_or(DMat3::IDENTITY, |f| f[self.first_row + i].0) * arm
     }
 
-    /// How the material around a particle moves, if that is asked for, and can be moved.
+    /// Motion of the material around a particle, if it is requested, and can be moved.
     pub fn local_motion(&self, i: usize, moving: bool) -> LocalMotion {
         let row = self.first_row + i;
         if !self.is_there(i) {

@@ -15,7 +15,7 @@ use crate::world::DeformationGradient;
 /// sphere.
 pub(in crate::contact) type Shape = (f64, Option<DMat3>);
 
-/// Where two sides are near each other.
+/// Distance and normal of two sides near each other.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::contact) struct Nearness {
     /// Overlap d, m; negative where there is none.

@@ -91,7 +91,7 @@ impl ParticleContact {
         Ok(energies)
     }
 
-    /// What the springs of all pairs hold that touch, J.
+    /// Energy of the springs of all active pairs, J.
     pub fn pressed(&mut self, step: &Step<'_>, motion: [MotionBounds; 2]) -> Result<f64, StepError> {
         let (_, stretch) = self.search_anew(step, motion)?;
         Ok(self.evaluate(step, stretch)?.0.stored)

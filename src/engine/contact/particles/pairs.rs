@@ -38,7 +38,7 @@ pub(super) struct ContactPairs<'a> {
 }
 
 impl ContactPairs<'_> {
-    /// How near two particles are that touch. Takes in the distance of those that are near and just touch, m.
+    /// Overlap of two particles in contact. Takes in the distance of those that are near and just touch, m.
     #[inline(always)]
     pub fn touching(&self, key: PairKey, least: &mut Least) -> Option<Nearness> {
         let Self { first, second, mirror, .. } = self;
@@ -131,7 +131,7 @@ impl ContactPairs<'_> {
         }
     }
 
-    /// What a pair does to its particle at that end.
+    /// Force of a pair on its particle at that end.
     #[inline(always)]
     pub fn pull(&self, push: &PairPush, end: ContactEnd) -> NodeLoad {
         let PairPush { arms, force, stiffness, heat } = *push;

@@ -31,7 +31,7 @@ pub(super) struct Planner<'a> {
     pub skins: BodySkins,
     /// Pairs that touch with skins until a particle of these fails.
     pub fragile: Vec<Fragile>,
-    /// What is reported of bodies that have none.
+    /// Warnings of bodies that have none.
     pub warnings: Vec<String>,
 }
 
@@ -40,7 +40,7 @@ fn always(touching: Vec<Touching>) -> Vec<(Touching, Acts)> {
 }
 
 impl Planner<'_> {
-    /// What touches by a contact of the scene.
+    /// The pairs in contact by a contact of the scene.
     ///
     /// # Errors
     /// The parameters of the law are wrong, or the domain is too short for the particles.
@@ -182,7 +182,7 @@ impl Planner<'_> {
         MemberParticles::of(body, self.sim.dimension())
     }
 
-    /// How the two bodies of a contact act on each other where surfaces touch, or particles.
+    /// Interaction of the two bodies of a contact, where surfaces or particles touch.
     fn interaction(&self, named: &Named<'_>, surface: ContactSurface) -> Result<Interaction, Vec<Problem>> {
         let contact = named.contact;
         let [first, second] = [&contact.between.0, &contact.between.1].map(|name| find(self.sim, name));

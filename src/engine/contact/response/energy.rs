@@ -9,16 +9,16 @@ use crate::world::BodyId;
 /// Account of what springs of skins held beyond those of the particles that touch in their place.
 pub(in crate::contact) const CHANGE_OF_SURFACE: &str = "contact_surface";
 
-/// What the contacts of two bodies hold and have lost in a step, J.
+/// Stored and dissipated energy of the contacts of two bodies in a step, J.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::contact) struct ContactEnergy {
     pub stored: f64,
     pub losses: Losses,
-    /// What contacts of particles held that have been taken out.
+    /// Energy of contacts of particles that have been removed.
     pub removed: f64,
-    /// What the forces do in the kick that ends the step.
+    /// Work of the forces in the kick that ends the step.
     pub ahead: f64,
-    /// What springs held that others have taken over from, less what these hold.
+    /// Energy of springs replaced by others, less that of the others.
     pub changed: f64,
 }
 

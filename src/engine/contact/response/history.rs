@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// surface.
 pub(in crate::contact) type PairKey = (u32, u32);
 
-/// What a contact remembers.
+/// History of a contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(in crate::contact) struct History {
     /// Force of the tangential spring on the first side, N.

@@ -15,7 +15,7 @@ use glam::DVec3;
 use super::history::History;
 use crate::contact::laws::{NormalForce, Spring, Touch};
 
-/// How two bodies act on each other where they touch.
+/// Interaction of two bodies in contact.
 pub(in crate::contact) struct Interaction {
     pub law: Box<dyn NormalForce>,
     /// Coulomb's coefficient.
@@ -47,7 +47,7 @@ pub(in crate::contact) struct ContactState {
     pub acceleration: DVec3,
 }
 
-/// What a contact does.
+/// Force and stiffness of a contact.
 pub(in crate::contact) struct Response {
     /// Force on the first side, N.
     pub force: DVec3,
@@ -55,14 +55,14 @@ pub(in crate::contact) struct Response {
     pub history: History,
 }
 
-/// What a contact has turned into heat in a step, J.
+/// Dissipation of a contact in a step, J.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::contact) struct Losses {
     pub damping: f64,
     pub friction: f64,
 }
 
-/// What limits the tangential force of a contact.
+/// Limits of the tangential force of a contact.
 #[derive(Clone, Copy)]
 struct Limits {
     /// Stiffness of the tangential spring, N/m.

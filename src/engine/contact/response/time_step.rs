@@ -33,7 +33,7 @@ const AHEAD: f64 = 3.0;
 /// Overlap over the spacing whose stiffness stands for that of a touch to come: laws may begin with none.
 const EXPECTED: f64 = 0.05;
 
-/// What decides how long the steps of two skins may be.
+/// Input of the stable step of contact of two skins.
 pub(in crate::contact) struct OfSkins<'a> {
     pub law: &'a dyn NormalForce,
     /// The law at an overlap of zero, and the area for which it holds, m2 (m).
@@ -91,7 +91,7 @@ const OF_LOADED: f64 = 0.11;
 /// What touches at the start overlaps by round-off.
 const LOADED: f64 = 1e-3;
 
-/// How two bodies touch, as far as the step follows from it.
+/// Properties of a contact of two bodies for the stable step.
 pub(in crate::contact) struct Touches {
     /// Largest squared frequency of a contact, 1/s2.
     pub squared: f64,
@@ -143,7 +143,7 @@ const IMPACT_FACTORS: [f64; 2] = [0.05, 0.3];
 /// Frequency of all springs together over that of a slow swing of a body on them, such as rocking.
 const SLOWER: f64 = 2.0;
 
-/// How points of a rigid body, or particles of a wall, near the surface of another one move along its normal.
+/// Normal motion of points of a rigid body, or particles of a wall, near the surface of another one.
 #[derive(Clone, Copy, Default)]
 pub(in crate::contact) struct NormalMotion {
     /// Largest overlap, m.

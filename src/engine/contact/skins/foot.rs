@@ -66,7 +66,7 @@ pub(super) struct CloseFacets {
     /// The facet of the points.
     of: u32,
     facets: [u32; ROOM],
-    /// How many there are; none if there is no room for them.
+    /// Their number; none if they do not fit.
     count: Option<usize>,
 }
 

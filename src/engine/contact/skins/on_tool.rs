@@ -31,10 +31,11 @@ pub(in crate::contact) struct SkinOnTool {
     pub sides: ContactSides,
     points: Points,
     near: NearTool,
-    /// What every vertex of the patch sees of the tool, and which points of every facet near it may touch.
+    /// Position of the tool relative to every vertex of the patch, and the points of every facet near it that
+    /// may touch.
     seen: Vec<ToolView>,
     reached: Vec<Reached>,
-    /// What presses on the vertices of every facet near the tool, and on every vertex of the patch.
+    /// Forces on the vertices of every facet near the tool, and on every vertex of the patch.
     on_facets: Vec<[Pressed; 3]>,
     pressed: Vec<Pressed>,
     /// Of every vertex of the patch the area of even facets that is its own, m2 (m).
@@ -44,7 +45,7 @@ pub(in crate::contact) struct SkinOnTool {
     pub contacts: ActiveContacts<u32, VertexRub, ()>,
 }
 
-/// What dashpot and friction do at a vertex: force, N, and heat of friction, J.
+/// Force of dashpot and friction at a vertex, N, and heat of friction, J.
 #[derive(Clone, Copy, Default)]
 pub(in crate::contact) struct VertexRub {
     force: DVec3,

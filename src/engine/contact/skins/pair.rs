@@ -136,7 +136,7 @@ impl SkinPair {
         0.5 * (self.patches[0].skin.spacing + self.patches[1].skin.spacing)
     }
 
-    /// What the points of one side do, and the least gap of points that do not touch, m.
+    /// Forces of the points of one side, and the least gap of points without contact, m.
     fn evaluate(&mut self, side: usize, dt: f64) -> (ContactEnergy, Least) {
         let length = self.length();
         let periodic = self.periodic.any().then_some(self.periodic);

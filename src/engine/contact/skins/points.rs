@@ -26,10 +26,10 @@ const SMOOTH: f64 = 0.9;
 /// even: there the rules differ by some ten-thousandths of the energy of the facet.
 const EVEN: f64 = 0.05;
 const EVEN_OF_SIDE: f64 = 1e-3;
-/// What distances may differ from those of a plane, over the longest side of the facet.
+/// Tolerance of distances from those of a plane, over the longest side of the facet.
 const PLANE: f64 = 1e-9;
 
-/// Where the tool is as a vertex sees it.
+/// Position of the tool relative to a vertex.
 #[derive(Clone, Copy, Default)]
 pub(super) struct ToolView {
     /// Distance from its surface, m; negative inside.
@@ -80,7 +80,7 @@ impl Reached {
     }
 }
 
-/// What presses on a vertex.
+/// Contact force on a vertex.
 #[derive(Clone, Copy, Default)]
 pub(in crate::contact) struct Pressed {
     /// Along the normals, N.
@@ -117,7 +117,7 @@ impl Pressed {
     }
 }
 
-/// What the points of some facets or vertices tell beside their forces.
+/// Extremes over the points of some facets or vertices.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Extremes {
     /// Gap of the nearest point that does not touch, m.
@@ -139,7 +139,7 @@ pub(super) struct Points {
     coarse: QuadratureRule,
 }
 
-/// What all points of a step share.
+/// Data common to all points of a step.
 pub(super) struct Pressing<'a> {
     interaction: &'a Interaction,
     patch: &'a Patch,
@@ -158,7 +158,7 @@ impl Points {
         Self { fine: QuadratureRule::fine(axes, PARTS[axes - 2]), coarse: QuadratureRule::exact(axes) }
     }
 
-    /// What presses on the vertices of a facet.
+    /// Contact force on the vertices of a facet.
     pub fn press(
         &self,
         on: &Pressing<'_>,
@@ -194,7 +194,8 @@ impl Points {
         pressed
     }
 
-    /// What presses on the vertices of a facet behind a plane: its points are as deep as the vertices tell.
+    /// Contact force on the vertices of a facet behind a plane: the depths of its points follow from those of
+    /// the vertices.
     fn press_flat(
         &self,
         on: &Pressing<'_>,
@@ -238,7 +239,7 @@ pub(super) fn touch_of(skin: &Skin, tool: &RigidBody) -> (Touch, f64) {
 }
 
 impl<'a> Pressing<'a> {
-    /// What the points of a patch on a tool share in a step of `dt`, s.
+    /// Data common to the points of a patch on a tool in a step of `dt`, s.
     pub fn new(
         interaction: &'a Interaction,
         patch: &'a Patch,
@@ -258,7 +259,7 @@ impl<'a> Pressing<'a> {
         spring
     }
 
-    /// Where the tool is as a place sees it that moves at `velocity`, m/s.
+    /// Position of the tool relative to a place that moves at `velocity`, m/s.
     pub fn look(&self, x: DVec3, velocity: DVec3) -> ToolView {
         let nearest = self.sides.closest(x, self.tool);
         let x = self.sides.near(x, self.tool);

@@ -21,7 +21,7 @@ pub(in crate::contact) struct PointTouch {
     weight: f64,
 }
 
-/// What a point does.
+/// Force of a point.
 #[derive(Clone, Copy, Default)]
 pub(in crate::contact) struct PointPush {
     /// Force on the point, N, and how much of it is across the normal.
@@ -54,13 +54,13 @@ impl FacetPoint {
     }
 }
 
-/// How a point moves relative to the material of the other body.
+/// Motion of a point relative to the material of the other body.
 struct PointMotion {
     /// Velocity, along the normal that at the foot and across it that at the point, m/s.
     velocity: DVec3,
     /// From the foot to the point in the reference configuration of the other body, m.
     arm: DVec3,
-    /// How much a traction moves both, m2/kg.
+    /// Inverse mass of both sides under a traction, m2/kg.
     mobility: DVec3,
 }
 
@@ -198,7 +198,7 @@ impl SkinSide<'_> {
         (0..3).map(|k| shares[k] * corners[k].velocity).sum()
     }
 
-    /// How a point moves relative to the material of the other body.
+    /// Motion of a point relative to the material of the other body.
     #[inline(always)]
     fn motion(&self, point: u32, touch: &PointTouch) -> PointMotion {
         let FacetPoint { facet, shares } = self.point(point);

@@ -173,7 +173,7 @@ impl Contacts {
         self.acts[k].now(&self.fragile) && self.touching[k].bodies().iter().all(is_there)
     }
 
-    /// What acts in this step.
+    /// The contacts that act in this step.
     fn acting(&self) -> impl Iterator<Item = &Touching> {
         (0..self.touching.len()).filter(|&k| self.acts_now(k)).map(|k| &self.touching[k])
     }

@@ -76,7 +76,7 @@ impl Touching {
         }
     }
 
-    /// What the springs of particles hold that touch, J.
+    /// Energy of the springs of active particle contacts, J.
     pub fn pressed(&mut self, step: &Step<'_>, motion: [MotionBounds; 2]) -> Result<f64, StepError> {
         match self {
             Self::Particles(contact) => contact.pressed(step, motion),
@@ -132,7 +132,7 @@ impl Touching {
         }
     }
 
-    /// What a checkpoint keeps.
+    /// State in a checkpoint.
     pub fn saved(&self) -> Saved {
         let histories: &[&Histories] = match self {
             Self::Particles(contact) => &[&contact.contacts.histories],

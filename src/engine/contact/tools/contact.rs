@@ -27,13 +27,13 @@ pub(in crate::contact) struct SurfaceContact {
     pub contacts: ActiveContacts<NodeTouch, NodePush, NearNodes>,
     /// The particles that touch.
     pub contact_nodes: ContactNodes,
-    /// What the nodes near the surface say of the time step.
+    /// Data of the nodes near the surface for the time step.
     near: NearNodes,
-    /// What its springs do to the rigid bodies, where dashpots ask for it.
+    /// Forces of its springs on the rigid bodies, where dashpots need them.
     pub together: Option<Together>,
 }
 
-/// What the nodes that touch have answered in a step.
+/// Responses of the nodes in contact in a step.
 struct ToolResponses {
     energies: ContactEnergy,
     /// Squared frequency of an impact that may come, 1/s2.
@@ -89,7 +89,7 @@ impl SurfaceContact {
         Ok(())
     }
 
-    /// What the springs of all nodes hold that touch, J.
+    /// Energy of the springs of all active nodes, J.
     pub fn pressed(&mut self, step: &Step<'_>) -> Result<f64, StepError> {
         Ok(self.respond(step, 0.0, None)?.energies.stored)
     }

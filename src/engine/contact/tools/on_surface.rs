@@ -34,7 +34,7 @@ impl NodeTouch {
     }
 }
 
-/// What the nodes near the surface say of the time step.
+/// Data of the nodes near the surface for the time step.
 #[derive(Clone, Copy, Default)]
 pub(in crate::contact) struct NearNodes {
     /// Least way to the centre of a particle near the surface that just touches, m.
@@ -43,7 +43,7 @@ pub(in crate::contact) struct NearNodes {
     pub held: Option<usize>,
     /// How many nodes near it have no mass of their own: points of a rigid body, and such particles.
     pub massless: usize,
-    /// How they move along its normal.
+    /// Their normal motion.
     pub landing: NormalMotion,
 }
 
@@ -64,8 +64,8 @@ pub(super) struct OnSurface<'a> {
     pub tool: &'a RigidBody,
     /// Length of the step, s.
     pub dt: f64,
-    /// What the contacts of the step do to the rigid bodies together, those between the two and all of them,
-    /// if dashpots ask for that.
+    /// Forces of the contacts of the step on the rigid bodies, those between the two and all of them, if
+    /// dashpots need them.
     pub together: &'a [Together],
 }
 
@@ -174,7 +174,7 @@ impl OnSurface<'_> {
         (response.history, NodePush { arm, place, shift, force, center: x, turning, heat, stiffness })
     }
 
-    /// What all contacts of the step do to rigid bodies, where dashpots ask for it.
+    /// Forces of all contacts of the step on rigid bodies, where dashpots need them.
     pub fn act_together(&self, met: &[(PairKey, NodeTouch)]) -> Option<Together> {
         let Self { interaction, nodes, tool, .. } = self;
         let shares_a_mass = matches!(nodes, NodeView::Rigid(_)) || !tool.is_driven();

@@ -8,7 +8,7 @@ use crate::parallel::BlockSum;
 use crate::rigid::{RigidBody, Wrench};
 use crate::world::sum_by_row;
 
-/// What a contact does to both sides.
+/// Force of a contact on both sides.
 #[derive(Clone, Copy, Default)]
 pub(in crate::contact) struct NodePush {
     /// From the node to where it is pushed, in the reference configuration, m.
@@ -29,7 +29,7 @@ pub(in crate::contact) struct NodePush {
     pub stiffness: [f64; 2],
 }
 
-/// What contacts do to the bodies of both sides, about their centres, and the sums of their stiffness over
+/// Forces of contacts on the bodies of both sides, about their centres, and the sums of their stiffness over
 /// mass, 1/s2.
 #[derive(Clone, Copy, Default)]
 struct Pushes {

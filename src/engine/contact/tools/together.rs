@@ -33,7 +33,7 @@ pub(super) struct Spot {
     pub stiffness: f64,
 }
 
-/// What the springs of contacts do to two bodies by one metre, about the centres of the rigid ones.
+/// Response of two bodies to the springs of contacts for one metre, about the centres of the rigid ones.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::contact) struct Together {
     pub on_node: Wrench,
@@ -48,7 +48,7 @@ impl BlockSum for Together {
 }
 
 impl Together {
-    /// What one contact does.
+    /// The response to one contact.
     pub(super) fn of(spot: &Spot, nodes: &NodeView<'_>, tool: &RigidBody) -> Self {
         let force = spot.stiffness * spot.normal;
         let mut together = Self::default();

@@ -33,7 +33,7 @@ impl BodySetUp {
     }
 }
 
-/// What supports do to the bodies of a phase.
+/// Effects of supports on the bodies of a phase.
 pub(in crate::formulations) fn held_of(bodies: &[BodySetUp], sim: &SimBuilder<'_>) -> HeldParticles {
     let dimension = sim.dimension().count();
     let held = bodies.iter().map(|body| {

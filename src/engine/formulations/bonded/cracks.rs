@@ -20,7 +20,7 @@ use crate::parallel::{share_picked, sum_over_blocks};
 use crate::symmetry::Ghosts;
 use crate::world::{Damage, Removed};
 
-/// What a particle is to its neighbours.
+/// State of a particle as its neighbours treat it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(in crate::formulations) enum Mark {
     /// It holds.
@@ -39,9 +39,9 @@ pub(in crate::formulations) struct CrackEdge {
     pub row: u32,
     /// Whether a neighbour has failed in the last step.
     pub is_new: bool,
-    /// What folded terms have added to the corrected stress A_i.
+    /// Contribution of folded terms to the corrected stress A_i.
     pub stress: DMat3,
-    /// What they have added to the bond stiffness k_i.
+    /// Their contribution to the bond stiffness k_i.
     pub stiffness: f64,
 }
 

@@ -24,7 +24,7 @@ pub(in crate::formulations) struct Gather<'a> {
     /// `sum_j V_j w_ij u_ij`.
     pub stretch: &'a mut [DVec3; BLOCK],
     pub volume: &'a mut [f64; BLOCK],
-    /// What is going to be written once the gradients are there.
+    /// Rows to be written after the gradients.
     pub written: Written<'a>,
 }
 

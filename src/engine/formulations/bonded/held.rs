@@ -11,7 +11,7 @@ pub(in crate::formulations) struct HeldParticles {
     pub carried: Vec<f64>,
     /// The particles of every body that no other one sees, by their numbers, ascending.
     hidden: Vec<(BodyId, Vec<u32>)>,
-    /// What is to be told of bodies that are drawn unevenly.
+    /// Warnings of unevenly drawn bodies.
     pub warnings: Vec<String>,
 }
 

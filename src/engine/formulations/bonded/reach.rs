@@ -21,7 +21,7 @@ const WIDE: f64 = 1.0 / (LEAST * LEAST * LEAST * LEAST);
 /// Determinant of F F^T down to which, with such a trace, no stretch is below 1/20, far above the limit.
 const FLAT: f64 = 0.02;
 
-/// What a bound of an eigenvalue is raised by, so that rounding does not matter.
+/// Safety margin of a bound of an eigenvalue against rounding.
 const ROUNDING: f64 = 1e-6;
 /// Least bound of the eigenvalues of G, over their mean, from which on it is taken for the smallest: that is
 /// then no more than half as far from the mean.

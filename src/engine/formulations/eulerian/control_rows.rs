@@ -6,7 +6,7 @@ use crate::parallel::Lanes4;
 use crate::solids::FoldedEnergy;
 use crate::symmetry::Map;
 
-/// What a particle carries along from the start, as its neighbours read it.
+/// Initial data of a particle, as its neighbours read them.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(64))]
 pub(super) struct Carried {
@@ -50,7 +50,7 @@ impl Carried {
     }
 }
 
-/// What the pass writes of every row.
+/// Rows that the pass writes.
 #[derive(Default)]
 pub(super) struct EulerianControlRows {
     /// Force at fixed F, N.

@@ -22,7 +22,7 @@ column! {
 /// Account of what leaves the stored energy by it.
 const ACCOUNT: &str = "density_diffusion";
 
-/// What every particle holds against a change of its volume: tr(tau) V_0 over the axes of the body, J.
+/// Stiffness of every particle against a change of its volume: tr(tau) V_0 over the axes of the body, J.
 #[derive(Default)]
 pub(super) struct Dilatation {
     before: Vec<f64>,

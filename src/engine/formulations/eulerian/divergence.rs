@@ -19,7 +19,7 @@ pub enum Divergence {
     Shepard,
 }
 
-/// What neighbours read of the Kirchhoff stress of a particle of that mass.
+/// Record of the Kirchhoff stress of a particle of that mass for its neighbours.
 #[inline(always)]
 pub(super) fn corrected(
     divergence: Divergence,

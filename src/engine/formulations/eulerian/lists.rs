@@ -19,7 +19,7 @@ pub(super) struct EulerianBody {
     pub rows: Range<usize>,
     /// Support radius, m.
     pub support: f64,
-    /// What it repeats itself by.
+    /// Its symmetry planes and periods.
     pub repeats: Vec<Repeat>,
     /// Whether it touches itself: particles from elsewhere in the body are then no neighbours.
     pub touches_itself: bool,
@@ -130,9 +130,9 @@ impl EulerianBody {
         farthest.0.is_nan() || farthest.0 > limit * limit
     }
 
-    /// What the body repeats itself by where it is now, and how far from a side its ghosts have their
-    /// sources, m: a body that fills a period goes along with its motion, and its sides need not be flat any
-    /// more.
+    /// Symmetry planes and periods of the body at its present position, and the distance from a side within
+    /// which its ghosts have their sources, m: a body that fills a period moves along with it, and its sides
+    /// may deform.
     fn repeats_at(&self, position: &[DVec3]) -> (Vec<Repeat>, f64) {
         let mut reach = self.support * (1.0 + SKIN);
         if self.repeats.is_empty() {

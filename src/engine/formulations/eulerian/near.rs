@@ -12,7 +12,7 @@ use crate::parallel::{FourLanes, Lanes4, PlaneOrSpace, Split, run_hot_in};
 /// Spacings along two axes may differ by more than two, corners of bodies have above 0.8.
 pub(super) const LEAST_SPREAD: f64 = 0.02;
 
-/// What the pass finds of every row.
+/// Results of the pass for every row.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct NearbyMotion {
     /// Number of neighbours within the support.

@@ -13,7 +13,7 @@ use crate::solids::CorrectedStress;
 use crate::symmetry::Ghost;
 use crate::world::{DeformationGradient, Position, ReferenceVolume, Velocity};
 
-/// How the sums of a body are taken.
+/// Kernel and options of the sums of a body.
 #[derive(Clone, Copy)]
 pub(super) struct EulerianKernel {
     pub kernel: Kernel,
@@ -22,7 +22,7 @@ pub(super) struct EulerianKernel {
     pub control: Option<BodyControl>,
 }
 
-/// What the systems of the formulation share.
+/// Shared data of the systems of the formulation.
 pub(super) struct EulerianRows {
     pub lists: EulerianLists,
     /// Of every body, as in the lists.
@@ -36,7 +36,7 @@ pub(super) struct EulerianRows {
     /// Corrected stress tau M^-1, and in the last lane of its traction what it is weighted with: the volume
     /// V_0.
     pub stresses: Vec<CorrectedStress>,
-    /// What the control along pairs makes.
+    /// Results of the control along pairs.
     pub control: EulerianControlRows,
     /// Stable step of each body as it is now, s.
     pub stable_step: Vec<f64>,

@@ -229,7 +229,7 @@ impl Stress {
     }
 }
 
-/// What the pass writes of packed rows, cut by rows of one body.
+/// Packed rows that the pass writes, split by rows of one body.
 struct OwnRows<'a> {
     near: NeighborRows<'a>,
     deformation: &'a mut [DMat3],

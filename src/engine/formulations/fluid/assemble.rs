@@ -24,7 +24,7 @@ use crate::rigid::RigidBodies;
 use crate::scene::{Dimension, Problem};
 use crate::world::BodyId;
 
-/// What all fluids of a scene have in common.
+/// Properties common to all fluids of a scene.
 struct Common {
     kernel: FluidKernel,
     /// Support radius, m.
@@ -94,7 +94,7 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     systems::add(&groups, spin, repulsion, sim)
 }
 
-/// What the fluids have in common.
+/// Properties common to the fluids.
 fn in_common(fluids: &[FluidBody], sim: &SimBuilder<'_>) -> Result<Common, SetupError> {
     let first = &fluids[0];
     let (support, spacing) = (first.support, sim.body(first.id).spacing);
@@ -245,7 +245,7 @@ fn sides(groups: &[Group], sim: &SimBuilder<'_>) -> Vec<GapSide> {
     groups.iter().filter_map(side).collect()
 }
 
-/// Who is beside whom in the bodies that deform, and with spin in those to which fluids stick.
+/// Neighbourhoods within the bodies that deform, and with spin within those to which fluids stick.
 fn neighborhoods(
     groups: &[Group],
     spin: bool,

@@ -8,10 +8,10 @@
 //!
 //! The folders are listed in the order of their dependencies, and import only those above them.
 
-/// What the passes over neighbours read, and do for four of them at once.
+/// Records and arithmetic of the passes over neighbours, for four of them at once.
 mod lanes;
 
-/// Who is near whom: the lists of neighbours.
+/// The lists of neighbours.
 mod lists;
 
 /// All particles of a flow as one cloud.
@@ -26,7 +26,7 @@ mod rotation;
 /// Where the forces on boundaries act: at their surface.
 mod moments;
 
-/// What bounds a fluid.
+/// Boundaries of a fluid.
 mod walls;
 
 /// The two passes over pairs: the rate of compression, and the force.
@@ -35,7 +35,7 @@ mod passes;
 /// The force of a flow on bodies that take sub-steps beside it.
 mod coupling;
 
-/// What plugins that stabilize a flow do to it.
+/// Support for plugins that stabilize a flow.
 mod stabilizers;
 
 /// The parameters of a fluid.
@@ -44,7 +44,7 @@ mod formulation;
 /// The start of a flow.
 mod setup;
 
-/// What a flow must not do, looked at in the course of the run.
+/// Warnings of flows during a run.
 mod warnings;
 
 /// Fields that show a flow.

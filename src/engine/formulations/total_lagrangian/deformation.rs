@@ -17,7 +17,7 @@ use crate::solids::{Constitutive, CorrectedStress, SolidBlock, SolidRows, SolidS
 use crate::symmetry::Ghosts;
 use crate::world::Velocity;
 
-/// What the pass writes of packed rows, cut by rows of one body.
+/// Packed rows that the pass writes, split by rows of one body.
 pub(super) struct DeformationRows<'a> {
     pub stresses: &'a mut [CorrectedStress],
     /// `A_i sum_j V_j w_ij X_ij + k_i sum_j V_j w_ij u_ij`, the part of the force that knows no stress but

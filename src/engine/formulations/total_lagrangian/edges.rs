@@ -34,7 +34,7 @@ struct EdgeBond {
     change: DVec3,
 }
 
-/// What a term has added to the corrected stress and to the bond stiffness of a particle.
+/// Contribution of a term to the corrected stress and to the bond stiffness of a particle.
 #[derive(Clone, Copy)]
 struct Added {
     stress: DMat3,

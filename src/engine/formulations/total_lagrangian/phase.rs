@@ -13,7 +13,7 @@ use crate::solids::{CorrectedStress, LocalMotion, SolidPhase};
 use crate::symmetry::Ghosts;
 use crate::world::{Mobility, Velocity};
 
-/// What the systems of the formulation share.
+/// Shared data of the systems of the formulation.
 pub(in crate::formulations) struct PackedRows {
     pub bonds: Bonds,
     pub ghosts: Ghosts,

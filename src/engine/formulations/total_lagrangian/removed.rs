@@ -7,7 +7,7 @@ use crate::solids::Refits;
 pub(super) struct RemovedRows {
     /// Ascending.
     pub rows: Vec<u32>,
-    /// What the laws of plastic bodies go on from.
+    /// Corrections of F for the laws of plastic bodies.
     pub refits: Refits,
 }
 

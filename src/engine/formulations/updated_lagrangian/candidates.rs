@@ -20,7 +20,7 @@ use crate::symmetry::Ghosts;
 const SKIN: f64 = 0.1;
 /// Length of a cell over the largest radius, in which motions are compared.
 const CELL: f64 = 2.0;
-/// What the half axes of ellipsoids may be too short by, over their length.
+/// Tolerance of the half axes of ellipsoids, over their length.
 const ROUNDING: f64 = 1e-6;
 
 /// The particles of a body and what they see by.
@@ -35,7 +35,7 @@ pub(super) struct Searched<'a> {
     pub hidden: &'a [u32],
 }
 
-/// Who may be a neighbour of the particles of a body.
+/// Candidates for neighbours of the particles of a body.
 #[derive(Debug, Default)]
 pub(super) struct Candidates {
     /// A row for every particle of the body, with rows of the phase.

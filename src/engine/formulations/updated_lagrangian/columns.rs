@@ -12,6 +12,6 @@ column! {
     pub struct UpdatedGradient(DMat3) = "updated_gradient", "F_r", "1";
     /// Volume at the last update of the reference.
     pub struct UpdatedVolume(f64) = "updated_volume", "V", "m3";
-    /// What measures distances in the kernel, from the last update on.
+    /// Metric of distances in the kernel, from the last update on.
     pub struct UpdatedMetric(Sym3) = "updated_metric", "G", "1";
 }

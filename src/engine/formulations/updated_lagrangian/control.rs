@@ -81,7 +81,7 @@ pub(super) struct ControlPass<'a> {
     pub plane: bool,
 }
 
-/// What the pass writes of a block.
+/// Rows that the pass writes of a block.
 pub(super) struct ControlRows<'a> {
     pub stresses: &'a mut [CorrectedStress],
     pub self_force: &'a mut [DVec3],

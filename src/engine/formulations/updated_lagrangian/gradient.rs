@@ -12,7 +12,7 @@ use crate::linalg::Sym3;
 use crate::parallel::{BLOCK, run_hot, split_by_rows};
 use crate::solids::{Constitutive, CorrectedStress, SolidBlock, SolidRows, SolidSum};
 
-/// What the pass writes of packed rows, cut by rows of one body.
+/// Packed rows that the pass writes, split by rows of one body.
 pub(super) struct GradientRows<'a> {
     pub stresses: &'a mut [CorrectedStress],
     pub self_force: &'a mut [DVec3],

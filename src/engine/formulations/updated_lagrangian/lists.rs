@@ -25,7 +25,7 @@ const BLOCKS_AT_ONCE: usize = 8;
 /// Rows of a part of a block.
 const PART: usize = 16;
 
-/// What is kept from one update to the next.
+/// Buffers kept from one update to the next.
 #[derive(Default)]
 pub(super) struct ReferenceLists {
     /// Of every body.

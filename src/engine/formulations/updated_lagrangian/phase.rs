@@ -14,11 +14,11 @@ use crate::solids::{CorrectedStress, LocalMotion, SolidPhase};
 use crate::symmetry::{Ghosts, Repeat};
 use crate::world::{Force, Mobility, Velocity};
 
-/// What the systems of the formulation share.
+/// Shared data of the systems of the formulation.
 pub(super) struct UpdatedRows {
     /// Neighbours, weights and moments of the reference.
     pub bonds: Bonds,
-    /// What no particle sees.
+    /// Particles held behind an edge, which do not interact.
     pub held: HeldParticles,
     pub ghosts: Ghosts,
     /// Of every body, in the order of rows.
@@ -32,7 +32,7 @@ pub(super) struct UpdatedRows {
     pub pair_sites: Vec<PackedParticle>,
     /// F_r of the real rows.
     pub gradient: Vec<DMat3>,
-    /// How far the real rows see.
+    /// Supports of the real rows.
     pub ellipsoids: Vec<Ellipsoid>,
     /// Volume V_0 det F_r of the real rows, m3; zero for removed ones.
     pub volume: Vec<f64>,

@@ -8,7 +8,7 @@ use glam::{DMat3, DVec3};
 use crate::formulations::bonded::{Bonds, Gather, PackedParticle, Written};
 use crate::parallel::{BLOCK, for_each_own_block, run_hot_in, share_rows_of};
 
-/// What the sums of the first pass give for all real rows of the phase.
+/// Sums of the first pass for all real rows of the phase.
 #[derive(Default)]
 pub(super) struct ReferenceFit {
     /// f - I, of all ranks.

@@ -34,11 +34,11 @@ pub(super) struct PairBlock {
     support: Vec<f64>,
     /// Weights of the pairs that are measured.
     measured: Vec<f32>,
-    /// Who is near a particle by the largest radius.
+    /// Particles within the largest radius of a particle.
     near: Vec<u32>,
 }
 
-/// What the bonds of a row have in common.
+/// Moments common to the bonds of a row.
 #[derive(Clone, Copy)]
 pub(super) struct Correction {
     /// Inverse moment matrix; zero where there is none.

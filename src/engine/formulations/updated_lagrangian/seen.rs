@@ -20,7 +20,7 @@ pub(super) struct SeenParticles {
 /// The columns of F_r.
 pub(super) type Columns = [Lanes4; 3];
 
-/// How far a particle sees.
+/// Support of a particle.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(64))]
 struct SeenEllipsoid {
@@ -173,7 +173,7 @@ impl<A: FourLanes> OwnParticle<A> {
         sum
     }
 
-    /// What both measure along pair vectors, m, to four others.
+    /// Distances of pair vectors to four others by both metrics, m.
     #[inline(always)]
     pub fn measure(&self, a: A, r: Vector<A>, seen: &SeenParticles, [j, k, l, m]: [usize; 4]) -> FourSeen<A> {
         let of = &seen.ellipsoids[..];

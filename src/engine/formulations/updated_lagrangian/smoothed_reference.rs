@@ -37,7 +37,7 @@ const TIMES: usize = 3;
 /// Largest distance of a reference place from its particle, over the smoothing length.
 const FARTHEST: f64 = 0.25;
 
-/// What the reference places of a body are smoothed by.
+/// Input of the smoothing of the reference positions of a body.
 #[derive(Clone, Copy)]
 pub(super) struct ReferenceSmoothing<'a> {
     pub packed: &'a UpdatedRows,
@@ -56,12 +56,12 @@ pub(super) struct ReferenceSmoothing<'a> {
 pub(super) struct ReferenceRelaxation {
     held: Vec<Expected>,
     own_sums: Vec<DisplacementSum>,
-    /// What a place has moved from its particle, m, with the volume of what holds.
+    /// Displacement of a reference position from its particle, m, with the volume of intact particles.
     moved: Vec<Lanes4>,
     next: Vec<Lanes4>,
 }
 
-/// What neighbours see of a particle: the pair vectors that it expects.
+/// Record of a particle for its neighbours: the gradient of the expected pair vectors.
 #[derive(Clone, Copy, Default)]
 #[repr(C, align(64))]
 struct Expected {
@@ -87,7 +87,7 @@ impl Expected {
     }
 }
 
-/// What moves a place.
+/// Sums for the displacement of a reference position.
 #[derive(Clone, Copy, Default)]
 struct DisplacementSum {
     /// `sum_j V_j w_ij [x_ij - (F_i + F_j) X_ij / 2]`, with `sum_j V_j w_ij` in the last lane.

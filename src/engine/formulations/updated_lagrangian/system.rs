@@ -76,7 +76,7 @@ impl UpdatedSolids {
         }
     }
 
-    /// What the stable step of each body depends on.
+    /// Estimates of the stable step of each body.
     pub fn estimates(&self) -> Vec<StepEstimate> {
         self.solids.iter().map(|body| body.estimate).collect()
     }

@@ -14,7 +14,7 @@ pub enum ContainerError {
     Read {
         /// The file.
         path: PathBuf,
-        /// What the operating system said.
+        /// Error of the operating system.
         source: io::Error,
     },
     /// The file is of another kind.
@@ -53,7 +53,7 @@ pub enum ContainerError {
     Damaged {
         /// The file.
         path: PathBuf,
-        /// What does not fit.
+        /// The mismatch.
         what: String,
     },
     /// A section that is needed is not there.

@@ -14,14 +14,14 @@ use crate::schedule::Trigger;
 use crate::schedule::{Clock, Ledger, Step, StepError};
 use crate::world::World;
 
-/// What recordings say of the scene.
+/// Facts of the scene for recordings.
 pub(super) struct SceneInfo {
     pub title: String,
     pub name: String,
     pub text: String,
 }
 
-/// How far the output has come.
+/// Progress of the output.
 enum Progress {
     /// No file is open.
     Closed,
@@ -47,7 +47,7 @@ pub struct Output {
     progress: Progress,
 }
 
-/// What an output is made of.
+/// Parts of an output.
 pub(super) struct OutputParts {
     pub scene: SceneInfo,
     pub folder: OutputFolder,
@@ -60,7 +60,7 @@ pub(super) struct OutputParts {
     pub checkpoint_every: Option<f64>,
 }
 
-/// What a checkpoint keeps of the output.
+/// State of the output in a checkpoint.
 #[derive(Serialize, Deserialize)]
 struct OutputState {
     tracks: Vec<(String, TrackState)>,

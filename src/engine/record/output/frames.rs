@@ -29,7 +29,7 @@ pub(super) struct Frames {
     list: Option<PvdWriter>,
 }
 
-/// What a checkpoint keeps of the frames.
+/// State of the frames in a checkpoint.
 #[derive(Serialize, Deserialize)]
 pub(super) struct FramesState {
     trigger: Trigger,

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use crate::record::Existing;
 
-/// Where a run writes.
+/// Folder and options of the output of a run.
 #[derive(Clone, Debug)]
 pub struct OutputOptions {
     /// The folder; it is made if it is not there.

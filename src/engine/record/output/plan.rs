@@ -19,7 +19,7 @@ use crate::scene::{Item, Problem, Source, SourcePlace};
 use crate::schedule::Shared;
 use crate::world::BodySet;
 
-/// What will be written, if anything is.
+/// The planned output, if there is any.
 pub struct OutputPlan {
     probes: Vec<ResolvedProbe>,
     recorded: Vec<ChosenField>,

@@ -52,7 +52,7 @@ pub(super) struct SeriesFile {
     pub extremes: Vec<Extreme>,
 }
 
-/// What a checkpoint keeps of a table.
+/// State of a table in a checkpoint.
 #[derive(Serialize, Deserialize)]
 pub(super) struct TableState {
     /// Length of the file, B; none if it was not open yet.

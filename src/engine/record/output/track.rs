@@ -24,7 +24,7 @@ pub(super) struct Track {
     may_be_empty: bool,
     gauge: Arc<Gauge>,
     trigger: Trigger,
-    /// What its samples are means of, if they are.
+    /// The mean over time of its samples, if they are means.
     mean: Option<TimeMean>,
     pub table: SeriesFile,
     /// Time of the last sample, s.
@@ -35,7 +35,7 @@ pub(super) struct Track {
     held: Option<(f64, Ledger)>,
 }
 
-/// What a checkpoint keeps of a track.
+/// State of a track in a checkpoint.
 #[derive(Serialize, Deserialize)]
 pub(super) struct TrackState {
     trigger: Trigger,
@@ -204,7 +204,7 @@ impl Track {
     }
 }
 
-/// What cannot be written ends the run.
+/// An error of writing, which ends the run.
 pub(super) fn failed(error: impl Into<RecordError>) -> StepError {
     StepError::Output(error.into().to_string())
 }

@@ -10,7 +10,7 @@ use crate::scene::Take;
 use crate::schedule::Resources;
 use crate::world::{BodyId, Column, MissingColumn, Position, Removed, World};
 
-/// How the values at the points are reduced.
+/// Reduction of the values at the points.
 pub(super) enum Made {
     /// The value at the only point.
     Value,

@@ -11,7 +11,7 @@ use crate::scene::Problem;
 use crate::schedule::Resources;
 use crate::world::{MissingColumn, World};
 
-/// What a probe measures with.
+/// The instrument of a probe.
 pub enum Gauge {
     /// Mean or sum over particles.
     Particles(ParticleGauge),
@@ -19,7 +19,7 @@ pub enum Gauge {
     Point(PointGauge),
     /// Torque of the forces on particles.
     Torque(TorqueGauge),
-    /// What is measured otherwise.
+    /// Any other measurement.
     Measure(Box<dyn Measure>),
     /// Accounts of the energy ledger.
     Energies(EnergyColumns),

@@ -15,7 +15,7 @@ use crate::plugin::{BodyKind, BodyPlan, SimBuilder, facets_of};
 use crate::scene::{self, Line, Problem, Quantity, RelativeTo, Select, Take};
 use crate::world::BodySet;
 
-/// Where a probe measures.
+/// Place of a probe.
 pub(super) struct ProbePlace<'a> {
     /// Number of the probe in the scene, and the path of the place in it: empty, or that of the second place.
     k: usize,

@@ -26,7 +26,7 @@ pub struct ResolvedProbe {
     pub may_be_empty: bool,
     /// Whether samples are means over the time since the last one.
     pub mean: bool,
-    /// What it measures with.
+    /// The instrument.
     pub gauge: Arc<Gauge>,
 }
 

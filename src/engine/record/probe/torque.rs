@@ -13,7 +13,7 @@ pub struct TorqueGauge {
     pub(super) about: Option<DVec3>,
 }
 
-/// What turns about the origin.
+/// Sum of torques about the origin.
 #[derive(Clone, Copy, Default)]
 struct TorqueSum {
     mass: f64,

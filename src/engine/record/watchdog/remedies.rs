@@ -35,7 +35,7 @@ impl Remedies {
         self.plugins[body.0].iter().any(|name| name == plugin)
     }
 
-    /// What walls want that have given so much energy, J.
+    /// Advice for walls that have given so much energy, J.
     pub fn of_walls(&self, step: &Step<'_>, given: f64) -> String {
         if step.resources.try_get::<FlowCloud>().is_some_and(|cloud| cloud.gap_work > GAP_SHARE * given) {
             return "the pressure in gaps that no particle of the fluid fits into has moved a body, and no fluid has followed: start the body two spacings of the fluid from walls and others, hold it \
@@ -60,7 +60,7 @@ impl Remedies {
         }
     }
 
-    /// What a fluid under tension wants, or the one of that name; none if it has it.
+    /// Advice for a fluid under tension, or for the one of that name; none if it has the plugin.
     pub fn of_tension(&self, step: &Step<'_>, name: Option<&str>) -> Option<String> {
         let cloud = FlowCloud::whole(step.resources)?;
         let mut fluids = cloud.groups.iter().filter(|group| group.fluid().is_some());

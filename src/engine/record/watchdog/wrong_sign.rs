@@ -39,7 +39,7 @@ pub(super) struct WrongSign {
     weight: f64,
 }
 
-/// What an account has given.
+/// Energy supplied by an account.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Given {
     name: String,

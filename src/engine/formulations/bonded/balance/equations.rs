@@ -14,7 +14,7 @@ use super::zone::Zone;
 pub(super) struct Equations {
     /// The coefficients of the unknown shares.
     pub rows: SparseRows,
-    /// What is missing with the shares of the start.
+    /// Right-hand side with the initial shares.
     pub rest: Vec<f64>,
     /// The unknowns.
     pub unknown: Vec<Unknown>,
@@ -109,8 +109,8 @@ impl Equations {
         })
     }
 
-    /// How far a uniform stress is from balance: the root mean square of the forces on the particles, over
-    /// that on the area of one.
+    /// Imbalance of a uniform stress: the root mean square of the forces on the particles, over that on the
+    /// area of one.
     pub fn imbalance(&self, solution: &[f64]) -> f64 {
         let is_any_inside = self.balances.iter().any(|balance| balance.is_inside);
         let changes = self.rows.times(solution);

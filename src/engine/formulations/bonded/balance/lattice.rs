@@ -86,7 +86,7 @@ impl BondLattice {
         self.rows[number as usize].is_some_and(beside_one)
     }
 
-    /// What the bonds of a particle add to its b.
+    /// Contributions of the bonds of a particle to its b.
     pub fn shares(&self, number: u32) -> impl Iterator<Item = Share> + '_ {
         self.rows[number as usize].into_iter().flat_map(move |i| {
             let i = i as usize;

@@ -18,8 +18,8 @@ const SHARES: (f64, f64) = (0.1, 2.5);
 pub(in crate::formulations) struct Balanced {
     /// The shares of all particles that do not carry all of their stress, by their numbers.
     pub shares: Vec<(u32, f64)>,
-    /// How far a uniform stress is from balance beside them: the root mean square of the forces on the
-    /// particles, over that on the area of one.
+    /// Imbalance of a uniform stress beside them: the root mean square of the forces on the particles, over
+    /// that on the area of one.
     pub imbalance: f64,
 }
 

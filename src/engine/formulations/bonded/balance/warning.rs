@@ -7,7 +7,7 @@ use crate::plugin::HeldSide;
 /// lattices in docs/solids.md.
 const UNEVEN: f64 = 0.01;
 
-/// What to tell of a body with that imbalance beside its sides, if its metal strains unevenly.
+/// Warning of a body with that imbalance beside its sides, if its metal strains unevenly.
 pub(in crate::formulations) fn warning(body: &HeldBody<'_>, imbalance: f64) -> Option<String> {
     let plan = body.plan;
     let flows = || plan.solid_law().is_ok_and(|law| law.initial_yield_stress().is_some_and(f64::is_finite));

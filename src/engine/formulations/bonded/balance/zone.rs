@@ -20,7 +20,7 @@ const BESIDE: f64 = 0.6;
 /// Of the unit normals of two sides, the product from which on they are one direction.
 const SAME: f64 = 0.99;
 
-/// Where stresses are to balance, and what that depends on.
+/// Particles whose stress is to be in equilibrium, and those that affect it.
 pub(super) struct Zone {
     /// Particles of which something is asked, by their numbers in the body, ascending.
     pub asked: Vec<u32>,
@@ -31,8 +31,7 @@ pub(super) struct Zone {
     pub unknown: Vec<(u32, f64)>,
     /// Particles on which b depends, by their numbers in the body, ascending.
     pub seen: Vec<u32>,
-    /// What tells each of `asked` from others, apart from its neighbours: its distances from the sides, and
-    /// what is asked of it.
+    /// Label of each of `asked` apart from its neighbours: its distances from the sides, and its condition.
     pub labels: Vec<u64>,
     /// Place in `asked` of every particle of the body, if it is there.
     at: Vec<Option<u32>>,

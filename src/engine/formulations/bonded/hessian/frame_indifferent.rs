@@ -157,7 +157,7 @@ fn fill_loose(
     ghosts.fill(loose, |_, source| *source);
 }
 
-/// What neighbours see of a gradient: -H/2, with 1 in the last lane of the first column, and b with the
+/// Record of a gradient for neighbours: -H/2, with 1 in the last lane of the first column, and b with the
 /// volume, in the frame.
 #[inline(always)]
 fn slope(h: &DMat3, site: &PackedParticle, frame: &AffineFrame) -> CorrectedStress {

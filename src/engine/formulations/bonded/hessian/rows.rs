@@ -28,13 +28,13 @@ pub(in crate::formulations) struct HessianRows {
     pub gradient: Vec<DMat3>,
     /// Stiffness of the frame-indifferent form, J.
     pub stiffness: Vec<f64>,
-    /// What neighbours see of the gradients, of all rows.
+    /// Records of the gradients for neighbours, of all rows.
     pub slopes: Vec<CorrectedStress>,
     /// Places of all rows, with the force per volume squared and weight that acts along their bonds.
     pub bond_forces: Vec<PackedParticle>,
     /// Of all rows, whether their motion says nothing; empty where that of all does.
     pub loose: Vec<bool>,
-    /// What the form of the paper needs of the reference beside.
+    /// Additional rows for the form of the paper.
     pub vidal: VidalRows,
     /// Theta_i of the form of the paper, of all rows, Pa.
     pub stress: Vec<DMat3>,
@@ -130,7 +130,7 @@ pub(in crate::formulations) struct BondedSites<'a> {
     pub sites: &'a [PackedParticle],
 }
 
-/// What the first pass reads and writes of a block.
+/// Rows that the first pass reads and writes of a block.
 #[derive(Default)]
 pub(in crate::formulations) struct HessianBlock<'a> {
     eta: f64,

@@ -29,7 +29,7 @@ use crate::linalg::{Sym3, dyad};
 use crate::parallel::{FourLanes, HotLoop};
 use crate::symmetry::Ghosts;
 
-/// What the form needs of a reference configuration.
+/// Rows of a reference configuration for the form.
 #[derive(Default)]
 pub(in crate::formulations) struct VidalRows {
     /// b_ij of every bond.

@@ -21,7 +21,7 @@ pub struct Front {
     pub boundary: usize,
     /// Direction out of the face.
     pub normal: DVec3,
-    /// What it counts for, 0 to 1: the less the farther the particle is.
+    /// Weight, 0 to 1, decreasing with the distance of the particle.
     pub weight: f64,
     /// Distance of the particle from it, m.
     pub distance: f64,
@@ -29,9 +29,9 @@ pub struct Front {
     pub spacing: f64,
     /// Velocity of the boundary there, m/s.
     pub velocity: DVec3,
-    /// How what acts on the face is given to the particles of the boundary.
+    /// Distribution of the force on the face to the particles of the boundary.
     pub shares: Shares,
-    /// What other boundaries take over for it: all of it, and the part that is due to their own pressure, N.
+    /// Force taken over by other boundaries: all of it, and the part that is due to their own pressure, N.
     pub force: [DVec3; 2],
 }
 
@@ -44,14 +44,13 @@ pub struct EdgeParticle {
     pub behind: f64,
     /// Inverse of the moments of the normals around it, with what it counts for itself, times this share.
     pub inverse: DMat3,
-    /// What it counts for itself.
+    /// Weight of the particle itself.
     pub own: f64,
     /// Velocity at which the faces around it move, less its own, m/s.
     pub excess: DVec3,
-    /// What that adds to the rate of compression beside it, over the share of the kernel that fluids fill,
-    /// 1/s.
+    /// Contribution to the rate of compression beside it, over the share of the kernel that fluids fill, 1/s.
     pub rate: f64,
-    /// What it gives away to the faces of all boundaries: all of it, and the part that is due to its own
+    /// Force handed over to the faces of all boundaries: all of it, and the part that is due to its own
     /// pressure, N.
     pub force: [DVec3; 2],
 }

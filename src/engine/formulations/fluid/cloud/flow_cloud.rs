@@ -55,7 +55,7 @@ pub struct FlowCloud {
     pub(in crate::formulations::fluid) records: Vec<FlowParticle>,
     /// Of every group: whether the places and volumes of its rows are those of the step before.
     pub(in crate::formulations::fluid) is_still: Vec<bool>,
-    /// What is known of the particles of other ranks.
+    /// Validity of the particles of other ranks.
     pub(in crate::formulations::fluid) others: OtherParticles,
     pub(in crate::formulations::fluid) pairs: FlowPairs,
     /// The blocks of passes in single precision; none in double precision.
@@ -171,7 +171,7 @@ impl FlowCloud {
         of_blocks + fluid.pairs() + walls.pairs() + boundary.pairs()
     }
 
-    /// How often the lists have been built.
+    /// Number of builds of the lists.
     pub fn builds(&self) -> u64 {
         self.pairs.builds
     }

@@ -35,7 +35,7 @@ impl FluidState {
     }
 }
 
-/// What the particles of a group are to the flow.
+/// Role of the particles of a group in the flow.
 #[derive(Clone, Copy, Debug)]
 pub enum Role {
     /// They flow.
@@ -44,7 +44,7 @@ pub enum Role {
     Boundary(BoundarySurface),
 }
 
-/// What the surface of a boundary does to the fluid.
+/// Surface properties of a boundary.
 #[derive(Clone, Copy, Debug)]
 pub struct BoundarySurface {
     /// Whether the fluid sticks to it.
@@ -68,7 +68,7 @@ pub struct Group {
     pub rows: Range<usize>,
     /// Its rows in the cloud.
     pub cloud: Range<usize>,
-    /// What it is to the flow.
+    /// Role in the flow.
     pub role: Role,
     /// Whether someone holds particles by their rows, so that these must not be sorted.
     pub held: bool,

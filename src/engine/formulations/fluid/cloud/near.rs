@@ -13,7 +13,7 @@ use crate::parallel::{FourLanes, Number, Vector};
 pub struct FourNear<A: FourLanes> {
     /// Rows of the cloud.
     pub rows: [usize; 4],
-    /// What a pass sees of them.
+    /// Reads of the pass.
     pub pairs: NearPairs<A>,
 }
 

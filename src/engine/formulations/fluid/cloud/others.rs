@@ -215,7 +215,7 @@ impl FlowCloud {
     }
 }
 
-/// What a boundary particle is worth, in pairs with fluid particles.
+/// Cost of a boundary particle, in pairs with fluid particles.
 const OF_PARTICLE: usize = 2;
 
 /// A record that nobody can use.

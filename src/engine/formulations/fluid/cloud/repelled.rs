@@ -15,7 +15,7 @@ pub struct Repelled {
     pub distance: f64,
     /// Force on the particle, N; before that is known, over `l_i - d`, N/m.
     pub force: DVec3,
-    /// How the opposite is given to the particles of the boundary.
+    /// Distribution of the opposite force to the particles of the boundary.
     pub shares: Shares,
 }
 

@@ -102,7 +102,7 @@ fn lane_of<A: EightLanes>(Vector { x, y, z }: Vector<A>, lane: usize) -> DVec3 {
     DVec3::new(f64::from(x.lanes().0[lane]), f64::from(y.lanes().0[lane]), f64::from(z.lanes().0[lane]))
 }
 
-/// What a pass reads of the particles of a block, a particle in each lane.
+/// Data of the particles of a block for a pass, a particle in each lane.
 #[inline(always)]
 fn lanes_of<A: EightLanes, const R: usize, const S: usize, P: RowPass<R, S>>(
     a: A,

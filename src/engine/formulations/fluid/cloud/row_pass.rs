@@ -30,13 +30,13 @@ pub struct NearPairs<A: Arithmetic> {
 /// Sums over the neighbours of every particle, in `SUMS` vectors, that read `READS` vectors of each. In the
 /// plane the z of both is zero.
 pub trait RowPass<const READS: usize, const SUMS: usize>: Sync {
-    /// What it makes for each particle.
+    /// Result for each particle.
     type Output: Send;
 
     /// The rows of the cloud among which neighbours are summed: those of whole bodies.
     fn among(&self) -> Range<usize>;
 
-    /// What it reads of the particle in that row of the cloud. It may be rounded to single precision:
+    /// Vectors read of the particle in that row of the cloud. It may be rounded to single precision:
     /// subtract what all particles have in common.
     fn reads(&self, row: usize) -> [DVec3; READS];
 
@@ -50,7 +50,7 @@ pub trait RowPass<const READS: usize, const SUMS: usize>: Sync {
         sums: &mut [Vector<A>; SUMS],
     );
 
-    /// What the sums of the particle in that row make.
+    /// Result from the sums of the particle in that row.
     fn output(&self, row: usize, sums: &[DVec3; SUMS]) -> Self::Output;
 
     /// Whether the sums of that particle are not wanted; they are zero then.

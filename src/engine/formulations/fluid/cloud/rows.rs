@@ -13,7 +13,7 @@ use crate::parallel::{
 };
 use crate::ranks::has_several;
 
-/// What a pass sums for each row where several ranks exchange it, in memory that is kept.
+/// Sums of a pass for each row where several ranks exchange them, in memory that is kept.
 #[derive(Debug, Default)]
 pub struct RowSums(Vec<DVec3>);
 

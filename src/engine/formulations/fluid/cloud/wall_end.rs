@@ -9,7 +9,7 @@ use crate::ranks;
 pub struct WallEnd {
     /// The particle, as a row of the cloud.
     pub i: usize,
-    /// What of a motion is along the wall, for the share that empty space answers for.
+    /// Projection of a motion onto the wall, times the share that is lost to empty space.
     pub along: DMat3,
 }
 

@@ -24,7 +24,7 @@ pub struct ParticleRows<'a> {
     pub frozen: &'a mut [CouplingForce],
     pub friction: &'a mut [CouplingFriction],
     pub pressure: &'a mut [CouplingPressure],
-    /// What follows the motion within the long step; none where friction does not.
+    /// Friction that follows the motion within the long step; none where friction does not.
     pub drag: Option<DragRows<'a>>,
 }
 
@@ -99,7 +99,7 @@ impl Particles<'_> {
         pulled.map(|(drag, record)| drag * along(record.position())).sum()
     }
 
-    /// What particle `i` lacks of dt/2 (f(n) + f(n+1)), N s.
+    /// The missing impulse of particle `i` up to dt/2 (f(n) + f(n+1)), N s.
     fn correction_impulse(&self, i: usize, k: usize, rows: &ParticleRows<'_>) -> DVec3 {
         let given = rows.drag.as_ref().map_or(DVec3::ZERO, |drag| drag.impulse(k));
         0.5 * self.dt * (self.force_now(i).0 - rows.frozen[k].0) - given

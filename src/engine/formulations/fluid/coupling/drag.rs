@@ -99,7 +99,7 @@ impl<'w> DragColumns<'w> {
     }
 }
 
-/// What the drag of the particles of a body is made of.
+/// Columns of the drag of the particles of a body.
 pub struct DragRows<'a> {
     pub drag: &'a mut [CouplingDrag],
     pub motion: &'a mut [CouplingMotion],

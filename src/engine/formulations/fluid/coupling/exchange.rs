@@ -16,7 +16,7 @@ crate::column! {
     pub struct CouplingPressure(glam::DVec3) = "coupling_pressure", "f_w", "N";
 }
 
-/// What the change of the force does, J.
+/// Work of the change of the force, J.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Exchange {
     /// Gain of kinetic energy.

@@ -9,8 +9,8 @@ use crate::schedule::{AccountKind, Run, Step, StepError};
 use crate::world::{Density, DensityRate, Mass, Removed};
 
 crate::column! {
-    /// What the density of a fluid has yet to follow of a non-advective displacement: by the next step it
-    /// does.
+    /// Change of the density of a fluid that is still to follow from a non-advective displacement, in the
+    /// next step.
     pub struct DensityShift(f64) = "density_shift", "rho_s", "kg/m^3";
 }
 
@@ -25,7 +25,7 @@ pub struct Continuity {
     pub sums: Vec<Change>,
 }
 
-/// What a block learns.
+/// Sums over a block.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
 pub struct Change {

@@ -30,7 +30,7 @@ pub struct ApplyState {
     pub sums: Vec<StateSum>,
 }
 
-/// What a block learns.
+/// Sums over a block.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
 pub struct StateSum {

@@ -13,7 +13,7 @@ pub const BATCH: usize = 32;
 pub struct Batch {
     /// Squares of the lengths, m2.
     square: [Lanes4; BATCH],
-    /// What the kernel weight is multiplied with.
+    /// Factors of the kernel weight.
     factor: [Lanes4; BATCH],
 }
 

@@ -228,7 +228,7 @@ impl PairShape for &FluidKernel {
 
 /// A loop over pairs.
 pub trait KernelLoop {
-    /// What it returns.
+    /// Result.
     type Output;
     /// The loop.
     fn run<K: PairShape>(self, kernel: K) -> Self::Output;

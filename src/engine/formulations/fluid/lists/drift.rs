@@ -17,7 +17,7 @@ use crate::neighbors::{Buckets, CellBlock, Periodic, SHIFT, sort_into_cells};
 use crate::parallel::{FourLanes, HotLoop, Lanes4, run_hot, sum_over_blocks};
 use crate::ranks;
 
-/// What has to hold for lists to be good, m.
+/// Conditions for the validity of lists, m.
 #[derive(Clone, Copy, Debug)]
 pub struct Skins {
     /// Support radius.
@@ -158,7 +158,7 @@ impl Drift {
     }
 }
 
-/// What some particles have moved.
+/// Displacements of some particles.
 struct Moved<'a> {
     records: &'a [FlowParticle],
     rows: &'a [u32],

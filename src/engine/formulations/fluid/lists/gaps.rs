@@ -12,7 +12,7 @@ use super::drift::Drift;
 use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic};
 use crate::world::BodyId;
 
-/// What moves a boundary.
+/// Motion of a boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum SideMotion {
     /// It is a wall.
@@ -51,7 +51,7 @@ pub struct GapPairs {
     pub list: NeighborList,
 }
 
-/// What the lists are made of.
+/// Search for the lists.
 #[derive(Clone, Copy)]
 pub struct GapSearch<'a> {
     pub positions: &'a [DVec3],

@@ -96,7 +96,7 @@ impl FlowPairs {
         own.extend(bodies.map(|body| own_rows(&body)).filter(|own| !own.is_empty()));
     }
 
-    /// What is near a block that another rank computes.
+    /// Rows near a block that another rank computes.
     pub fn row_of_others<'b>(&self, lists: &'b BlockLists, block: usize) -> &'b [u32] {
         let Self { search, groups, skins, periodic, walls, boundary, .. } = self;
         let sources = OtherSources { search, groups, skin: skins.fluid, periodic, walls, boundary };

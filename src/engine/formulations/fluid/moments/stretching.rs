@@ -34,7 +34,7 @@ pub struct SurfaceStretching {
     rates: Vec<StretchBeside>,
 }
 
-/// How the surface stretches beside a boundary particle.
+/// Stretch of the surface beside a boundary particle.
 #[derive(Clone, Copy, Debug)]
 struct StretchBeside {
     /// Symmetric part of L_w, 1/s.
@@ -126,7 +126,8 @@ impl FlowCloud {
         })
     }
 
-    /// What the stretching takes from the rate beside a particle of a group, in that row of the boundaries.
+    /// Contribution of the stretching to the rate beside a particle of a group, in that row of the
+    /// boundaries.
     fn rate_beside(&self, group: &Group, row: usize, stretch: &Sym3, half: f64) -> f64 {
         if !group.has_suction() {
             return 0.0;

@@ -27,8 +27,7 @@ pub struct PairForce<'a> {
     pub adds: bool,
 }
 
-/// What the pass writes: the force, what pair terms make, and [`PARTS`] parts of the force for every
-/// particle.
+/// Output of the pass: the force, forces of pair terms, and [`PARTS`] parts of the force for every particle.
 pub struct ForceRows<'a> {
     pub written: TermRows<'a>,
     pub parts: &'a mut [DVec3],
@@ -143,7 +142,7 @@ impl PairForceRows<'_> {
     }
 }
 
-/// What the sums over the neighbours of all particles of a group have in common.
+/// Data common to the sums over the neighbours of all particles of a group.
 struct RowConstants<'a> {
     cloud: &'a FlowCloud,
     group: &'a Group,

@@ -17,7 +17,7 @@ pub struct PairsOfRow<'a, const D: usize> {
     pub viscosity: f64,
 }
 
-/// What the neighbours of a particle do to it, per volume of it and in the lanes of the fours.
+/// Forces of the neighbours on a particle, per volume of it and in the lanes of the fours.
 pub struct Forces<const D: usize> {
     /// Of the pressures of fluids.
     pub pressure: [Lanes4; D],

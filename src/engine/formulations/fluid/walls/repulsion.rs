@@ -23,7 +23,7 @@ use crate::schedule::{Run, Step, StepError};
 use crate::world::{Force, ReferencePosition};
 
 crate::column! {
-    /// What the repulsion of boundaries lacks of its range for a fluid particle.
+    /// Shortfall of the range of the repulsion of boundaries for a fluid particle.
     pub struct RangeShortfall(f64) = "range_shortfall", "s", "m";
 }
 

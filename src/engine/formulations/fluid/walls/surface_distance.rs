@@ -170,8 +170,8 @@ impl BoundaryShape {
         BEFORE * self.spacing
     }
 
-    /// What a face counts for before a particle at that place: one on it, zero at [`Self::before`] and
-    /// beyond, where it is none.
+    /// Weight of a face for a particle at that place: one on it, zero at [`Self::before`] and beyond, where
+    /// it is none.
     pub fn nearness(&self, place: &PlaceInBody) -> Option<f64> {
         let limit = self.before();
         (place.distance < limit).then(|| 1.0 - (place.distance.max(0.0) / limit).powi(2))

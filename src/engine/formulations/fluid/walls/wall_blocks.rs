@@ -51,7 +51,7 @@ impl WallBlocks<'_> {
     }
 }
 
-/// What the pass over a body reads.
+/// Input of the pass over a body.
 struct Beside<'a> {
     cloud: &'a FlowCloud,
     lists: &'a BlockLists,

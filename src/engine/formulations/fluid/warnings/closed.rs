@@ -13,7 +13,7 @@ use crate::schedule::Step;
 
 /// Particles of a free surface over those of a side of a square, or a cube, of as many particles.
 const SURFACE: f64 = 0.25;
-/// What walls have taken over the energy of compression that is worth a warning.
+/// Energy taken by walls over the energy of compression that causes a warning.
 const TAKEN: f64 = 0.03;
 
 /// Watches the energy of compression, with which that of walls is compared at the end.
@@ -45,7 +45,7 @@ impl ClosedWatch {
         step.warnings.extend(found);
     }
 
-    /// What walls that do not pull have taken, where no fluid has a free surface.
+    /// Energy taken by walls without suction, where no fluid has a free surface.
     fn taken_by_walls(
         &self,
         cloud: &FlowCloud,

@@ -30,7 +30,7 @@ pub struct CompressionWatch {
     bodies: Vec<Told>,
 }
 
-/// What has been seen of a body.
+/// Deviation reported for a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Told {
     /// Frames in sequence with a large deviation.

@@ -12,7 +12,7 @@ use crate::parallel::{Arithmetic, Vector};
 /// Smallest eigenvalue of the moment matrix above which a particle is inside the fluid.
 const INSIDE: f64 = 0.75;
 
-/// What a particle inside of a fluid has to do with friction.
+/// Friction data of a particle inside of a fluid.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FrictionOfParticle {
     /// Power of friction with its neighbours over twice its factor, W.

@@ -20,7 +20,7 @@ const FRAMES: u32 = 3;
 /// Way from one frame to the next, over the spacing of the fluid, up to which a body stays where it is.
 const STILL: f64 = 0.05;
 
-/// What the last frames have shown of a body.
+/// Observations of a body in the last frames.
 #[derive(Clone, Serialize, Deserialize)]
 pub struct SeenFrames {
     body: u32,

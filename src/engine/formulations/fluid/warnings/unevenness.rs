@@ -104,7 +104,7 @@ struct Means {
     order: f64,
 }
 
-/// What the means are made of.
+/// Sums of the means.
 #[derive(Clone, Copy, Default)]
 struct UnevennessSums {
     count: f64,

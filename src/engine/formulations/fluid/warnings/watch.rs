@@ -51,7 +51,7 @@ struct FlowWatch {
     end: f64,
     /// Whether the lattices have been looked at.
     is_started: bool,
-    /// What the looks compute for each particle.
+    /// Results of the checks for each particle.
     scratch: Vec<Option<f64>>,
     friction: Vec<Option<FrictionOfParticle>>,
 }

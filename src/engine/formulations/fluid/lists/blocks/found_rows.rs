@@ -3,7 +3,7 @@
 use super::lists::BlockLists;
 use crate::neighbors::{Boxes, NeighborList, NeighborSearch, Periodic};
 
-/// What such lists are found with.
+/// Sources for such lists.
 pub struct OtherSources<'a> {
     /// The search that has sorted the fluids.
     pub search: &'a NeighborSearch,
@@ -17,7 +17,7 @@ pub struct OtherSources<'a> {
 }
 
 impl BlockLists {
-    /// What is near the box of a block that another rank computes, in the order of its list.
+    /// Rows near the box of a block that another rank computes, in the order of its list.
     #[cold]
     pub fn row_of_others(&self, block: usize, sources: &OtherSources<'_>) -> &[u32] {
         self.others.found[block].get_or_init(|| self.find(block, sources))

@@ -24,7 +24,7 @@ pub struct BlockLists {
     pub table: BlockTable,
     /// Fluids.
     pub fluid: NearRows,
-    /// What bounds them.
+    /// Boundary particles near the fluids.
     pub walls: NeighborList,
     /// For the blocks of what bounds the fluids, which come after those of fluids: the fluid particles near
     /// any of each. None where thin bodies hide some of what is near.
@@ -37,14 +37,14 @@ pub struct BlockLists {
     units: Units,
     /// How many fluid particles are near each particle of a block.
     pub counts: Vec<[u32; EIGHT]>,
-    /// What is near the boxes.
+    /// Particles near the boxes.
     candidates: NeighborList,
     places: Vec<Packed>,
     /// Which neighbours a block has already, while lists are joined.
     joined: Vec<u32>,
 }
 
-/// What lists are built from.
+/// Sources of the lists.
 pub struct ListSources<'a> {
     /// Positions of all particles, m; the search has sorted those of fluids.
     pub positions: &'a [DVec3],
@@ -55,7 +55,7 @@ pub struct ListSources<'a> {
     /// Whether all particles have one z.
     pub plane: bool,
     pub periodic: &'a Periodic,
-    /// Who sees whom beside thin bodies, with what is near each particle and no fluid, seen or not.
+    /// Visibility beside thin bodies, with the boundary particles near each particle, visible or not.
     pub sides: Option<(Sides<'a>, NeighborList)>,
     /// Whether every rank looks at all boundary particles.
     pub all_boundaries: bool,

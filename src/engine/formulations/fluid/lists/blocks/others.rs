@@ -13,7 +13,7 @@ use crate::ranks::{self, Cut};
 /// Lists of other ranks' blocks.
 #[derive(Debug, Default)]
 pub struct OtherRows {
-    /// How loops were divided when the lists were built.
+    /// Division of loops when the lists were built.
     cut: Option<Cut>,
     /// Blocks of this rank, ascending.
     own: Vec<Range<usize>>,

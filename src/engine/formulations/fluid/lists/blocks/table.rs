@@ -149,13 +149,13 @@ impl BlockTable {
         &self.starts[first + from..=first + to]
     }
 
-    /// What belongs to the blocks of a body, to be cut where its rows are.
+    /// Slice of data of the blocks of a body, split like its rows.
     pub fn beside<T>(&self, body: &Range<usize>, blocks: T) -> OfBlocks<'_, T> {
         OfBlocks { blocks, rows: body.len(), starts: self.starts_of(body) }
     }
 }
 
-/// What belongs to the blocks of some rows, which is cut where the rows are.
+/// Data of the blocks of some rows, split like the rows.
 pub struct OfBlocks<'a, T> {
     pub blocks: T,
     rows: usize,

@@ -64,7 +64,7 @@ impl FlowCloud {
 /// The bits of all particles of a block.
 const ALL: u8 = u8::MAX;
 
-/// What the pass reads.
+/// Input of the pass.
 #[derive(Clone, Copy)]
 struct Compress<'a> {
     packed: &'a [Packed],

@@ -27,7 +27,7 @@ pub struct PairsOfBlock<'a, K> {
     pub viscosity: f64,
 }
 
-/// What neighbours do to the particles of a block, N.
+/// Forces of neighbours on the particles of a block, N.
 #[derive(Clone, Copy)]
 pub struct BlockForces {
     /// Of the pressures of fluids.

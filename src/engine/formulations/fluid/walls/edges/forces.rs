@@ -50,7 +50,7 @@ impl Run for EdgeForces {
 }
 
 impl Front {
-    /// What the face counts for at a boundary particle, and how far that is behind it, m.
+    /// Weight of the face at a boundary particle, and the depth of the particle behind it, m.
     pub fn share_and_depth(&self, cloud: &FlowCloud, row: usize) -> (f64, f64) {
         let x = cloud.offset(cloud.records[self.i].position(), cloud.records[row].position());
         (self.weight * cloud.value_between(self.i, row), -x.dot(self.normal) - self.distance)

@@ -10,7 +10,7 @@ use crate::linalg::dyad;
 use crate::plugin::SimBuilder;
 use crate::schedule::{Run, Step, StepError};
 
-/// What a particle counts for itself, over all that faces count for around it.
+/// Weight of a particle itself, over the sum of the weights of faces around it.
 const OWN: f64 = 1e-3;
 
 /// Finds the particles beside edges and their motion.
@@ -26,7 +26,7 @@ pub struct EdgeMotion {
 struct FaceSums {
     moments: DMat3,
     motion: DVec3,
-    /// What the faces of other boundaries count for, and how much of that it is behind of.
+    /// Weight of the faces of other boundaries, and the part of it that the particle is behind.
     others: f64,
     behind: f64,
 }

@@ -31,7 +31,7 @@ impl FlowCloud {
         }
     }
 
-    /// What a particle does not see of its rate of compression, `half` a step before now, 1/s.
+    /// The part left out of the rate of compression of a particle, `half` a step before now, 1/s.
     pub(super) fn rate_along(&self, end: &WallEnd, half: f64) -> f64 {
         let (v, mut rate) = (self.records[end.i].velocity(), 0.0);
         self.for_each_end_wall(end.i, |w, x| {

@@ -10,7 +10,7 @@ use crate::formulations::fluid::cloud::FlowCloud;
 /// round spread over less, those of a corner over more.
 const SPREAD: f64 = 0.1;
 
-/// What is around a fluid particle.
+/// Neighbourhood of a fluid particle.
 #[derive(Default)]
 struct Around {
     /// Gradient of the part of the kernel that walls fill, and of all of it that is filled, 1/m.
@@ -20,8 +20,8 @@ struct Around {
 }
 
 impl FlowCloud {
-    /// What of a motion of particle `i` is along walls, for the share that empty space answers for, and the
-    /// direction along them into the wall; none where this is nothing. `faces` are those before it and the
+    /// Projection of a motion of particle `i` onto walls, times the share that is lost to empty space, and
+    /// the direction along them into the wall; none where this is zero. `faces` are those before it and the
     /// fluid particles around it.
     pub(super) fn along_walls(&self, i: usize, faces: &FacesBefore) -> Option<(DMat3, DVec3)> {
         let Around { wall, all, moments } = self.around(i, faces);

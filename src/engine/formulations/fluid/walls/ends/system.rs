@@ -27,7 +27,7 @@ pub struct WallEnds {
     /// Fluid particles within the support of one of these.
     beside: Vec<u32>,
     faces: FacesBefore,
-    /// What is along walls for each of the particles beside edges, and the ways along walls.
+    /// The projection onto walls for each of the particles beside edges, and the directions along walls.
     found: Vec<(WallEnd, DVec3)>,
 }
 
@@ -126,8 +126,8 @@ impl WallEnds {
         });
     }
 
-    /// What of all ways along a wall is open, zero to one: whether one meets no wall on the way `along` it
-    /// from particle `i`, within the support.
+    /// The open share of all ways along a wall, zero to one: whether there is no wall in the direction
+    /// `along` it from particle `i`, within the support.
     fn find_open(&mut self, cloud: &FlowCloud, step: &Step<'_>) -> Result<(), StepError> {
         let Self { shapes, found, .. } = self;
         for shape in shapes {

@@ -64,11 +64,11 @@ pub struct Gap {
     pub closed: f64,
     /// The fluid there; none before it is known.
     pub fluid: Option<RestOfGap>,
-    /// What its pressure falls by because the gap opens, Pa.
+    /// Fall of its pressure because the gap opens, Pa.
     pub fall: f64,
 }
 
-/// How the boundaries move.
+/// Motion of the boundaries.
 pub struct BoundaryMotion<'a> {
     /// Velocity of every boundary particle, m/s.
     pub velocities: &'a [DVec3],

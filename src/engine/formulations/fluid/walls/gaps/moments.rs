@@ -24,7 +24,7 @@ pub struct GapPair {
     pub weight: f64,
 }
 
-/// What surrounds a particle.
+/// Neighbourhood of a particle.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Surrounding {
     /// First moment of its own body and the fluid, 1/m.
