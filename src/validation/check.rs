@@ -18,7 +18,7 @@ pub enum Tolerance {
 /// A measured value, what it is compared with, and where that comes from.
 #[derive(Clone, Debug)]
 pub struct Check {
-    /// What is measured.
+    /// The measured quantity.
     pub name: String,
     /// Measured value.
     pub measured: f64,

@@ -28,16 +28,16 @@ pub fn register(registry: &mut Registry) {
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct DensityDiffusion {
-    /// What is diffused.
+    /// The diffused quantity.
     pub model: Model,
     /// Coefficient delta: 0.1 in fluids and 0.01 in Eulerian solids, if it is not given.
     pub delta: Option<f64>,
 }
 
-/// What is diffused.
+/// The diffused quantity.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 pub enum Model {
-    /// What differs from a linear field: water at rest under gravity is left alone.
+    /// The deviation from a linear field: water at rest under gravity does not change.
     #[default]
     Antuono,
     /// The density itself: cheaper, for flows without gravity.

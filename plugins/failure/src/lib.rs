@@ -53,15 +53,15 @@ column! {
 pub struct Failure {
     /// When a particle begins to fail.
     pub criterion: Criterion,
-    /// How damage grows from there on.
+    /// Growth of damage from there on.
     #[serde(default)]
     pub growth: Growth,
-    /// What a particle does whose damage has reached 1.
+    /// Behaviour of a particle whose damage has reached 1.
     #[serde(default)]
     pub then: Then,
 }
 
-/// How damage grows where the criterion is met.
+/// Growth of damage where the criterion is met.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum Growth {

@@ -5,22 +5,22 @@ use meshless_engine::linalg::{Eigen, Sym3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What a particle does whose damage has reached 1. On the way there damage D takes the share D of what is to
-/// be lost.
+/// Behaviour of a particle whose damage has reached 1. While damage D grows, it reduces the part of the
+/// stress that is to be lost by the share D.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 pub enum Then {
     /// It resists compression of its volume alone, like a granular material, until it is so long and thin
-    /// that its areas are three times as large: it then carries nothing any more. On the way there damage
-    /// takes from positive principal stresses.
+    /// that its areas are three times as large: it then carries no stress. While damage grows, it reduces
+    /// positive principal stresses.
     #[default]
     NoTension,
     /// It resists changes of its volume alone, like a liquid, tension included, until it loses its integrity:
-    /// volume ratio above 2, inverted (det F <= 0), or areas three times as large. It then carries nothing
-    /// any more. On the way there damage takes from the deviator.
+    /// volume ratio above 2, inverted (det F <= 0), or areas three times as large. It then carries no stress.
+    /// While damage grows, it reduces the deviator.
     NoDeviator,
-    /// It is taken out of the run. On the way there damage takes from positive principal stresses.
+    /// It is removed. While damage grows, it reduces positive principal stresses.
     Removed,
-    /// It is worn off: taken out of the run as soon as it is at a surface of its body. Inside, it is as with
+    /// Wear: it is removed as soon as it is at a surface of its body. Inside, it behaves as with
     /// `NoDeviator`.
     RemovedAtSurface,
 }

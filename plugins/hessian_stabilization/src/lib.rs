@@ -21,7 +21,7 @@ pub fn register(registry: &mut Registry) {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct HessianStabilization {
-    /// What is resisted, and how.
+    /// Form of the stabilization.
     pub form: DifferenceForm,
     /// Coefficient eta; the stiffness grows with its square.
     pub eta: f64,
@@ -39,9 +39,9 @@ pub enum DifferenceForm {
     /// The difference of two Laplacians of the positions stores energy: no direction counts more than
     /// another.
     FrameIndifferent,
-    /// The deformation gradient has the difference of two second derivatives times a vector added whose
-    /// components are all the smoothing length (Vidal, Bonet, Huerta 2007, eqs. 17-21): modes across the
-    /// diagonal are not seen.
+    /// The difference of two second derivatives, times a vector whose components are all the smoothing
+    /// length, is added to the deformation gradient (Vidal, Bonet, Huerta 2007, eqs. 17-21): modes across the
+    /// diagonal are not resisted.
     Vidal2007,
 }
 

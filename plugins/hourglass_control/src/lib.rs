@@ -39,7 +39,7 @@ pub fn register(registry: &mut Registry) {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct HourglassControl {
-    /// How the error of the mean deformation is resisted.
+    /// Form of the resistance to the hourglass residual.
     pub form: Form,
     /// Coefficient alpha of the elastic resistance of `Variational`, `Combined` and `Ganzenmueller2015` in
     /// Lagrangian bodies. Default: 5, 25 of the last.
@@ -52,7 +52,7 @@ pub struct HourglassControl {
     pub zeta: Option<f64>,
     /// Share chi of the viscous part of `Combined` and `MohseniMofidi2020`, 0 to 1. Default: 0.5.
     pub chi: Option<f64>,
-    /// What the elastic resistance is in particles that have yielded.
+    /// Modulus of the elastic resistance in particles that have yielded.
     pub after_yield: AfterYield,
 }
 
@@ -74,18 +74,18 @@ impl Default for HourglassControl {
 pub enum Form {
     /// `Variational`; `Combined` in Eulerian bodies whose material flows plastically.
     Default,
-    /// The exact gradient of an energy: of the whole error vector, with the weights of the deformation
-    /// gradient, in Lagrangian bodies; of the error along the bond and a tenth of that across it, with the
-    /// kernel of the present places, in Eulerian ones.
+    /// The exact gradient of an energy: of the whole residual vector, with the weights of the deformation
+    /// gradient, in Lagrangian bodies; of the residual along the bond and a tenth of that across it, with the
+    /// kernel at the current positions, in Eulerian ones.
     Variational,
-    /// The error along the bond (Ganzenmueller 2015, eqs. 31-32). It has no energy, and is booked as work. Of
-    /// Lagrangian bodies.
+    /// The residual along the bond (Ganzenmueller 2015, eqs. 31-32). It has no energy, and is booked as work.
+    /// For Lagrangian bodies.
     Ganzenmueller2015,
-    /// The error along the bond, with the kernel of the present places (Mohseni-Mofidi and Bierwisch 2020,
-    /// eq. 32). It has no energy, and is booked as work. Of Eulerian bodies.
+    /// The residual along the bond, with the kernel at the current positions (Mohseni-Mofidi and Bierwisch
+    /// 2020, eq. 32). It has no energy, and is booked as work. For Eulerian bodies.
     Stiffness,
-    /// A viscous force along the bond against the growth of the error (Mohseni-Mofidi and Bierwisch 2020, eq.
-    /// 33).
+    /// A viscous force along the bond against the growth of the residual (Mohseni-Mofidi and Bierwisch 2020,
+    /// eq. 33).
     Viscous,
     /// chi times `Viscous` and 1 - chi times `Variational` (Ganzenmueller and others 2016).
     Combined,

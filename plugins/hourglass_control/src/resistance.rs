@@ -4,7 +4,7 @@ use meshless_engine::solids::{FoldedEnergy, FoldedRows, FoldedTerm};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What the control resists with in a particle that has yielded.
+/// Modulus of the elastic resistance in a particle that has yielded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 pub enum AfterYield {
     /// The present flow stress (Ganzenmueller 2015, section 4.5): an elastic resistance would carry load that

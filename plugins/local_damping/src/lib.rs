@@ -25,8 +25,7 @@ pub fn register(registry: &mut Registry) {
     registry.plugin::<LocalDamping>();
 }
 
-/// Takes energy out of the motion of every particle that is free to move, but not out of that of rigid
-/// bodies.
+/// Damps the motion of every particle that is free to move, but not that of rigid bodies.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct LocalDamping {
@@ -42,7 +41,7 @@ pub struct LocalDamping {
     pub until: Option<f64>,
 }
 
-/// How the rate is found.
+/// Choice of the rate.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum DampingMode {

@@ -24,13 +24,13 @@ column! {
     pub struct IsDebris(u32) = "debris", "-", "1";
 }
 
-/// Takes crushed particles and small pieces of solids out of the run.
+/// Removes crushed particles and small pieces of solids.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct RemoveFragments {
     /// Volume over that of the start below which a particle is crushed; zero: none is.
     pub least_volume: f64,
-    /// Pieces of fewer particles are taken out; 1: none is. A piece is what hangs together by kernels.
+    /// Pieces of fewer particles are removed; 1: none is. A piece is a set of particles connected by kernels.
     /// Default: 5 in the plane and 7 in space, a particle with its nearest neighbours.
     pub particles: Option<usize>,
 }

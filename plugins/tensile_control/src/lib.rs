@@ -23,7 +23,7 @@ pub fn register(registry: &mut Registry) {
     registry.plugin::<TensileControl>();
 }
 
-/// Keeps fluids under negative pressure from tearing into threads.
+/// Prevents voids and threads in fluids under negative pressure.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct TensileControl {}

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{BodyDescription, Item};
 
-/// Two bodies that touch, and how.
+/// A contact of two bodies.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Contact {
@@ -20,21 +20,21 @@ pub struct Contact {
     #[serde(default)]
     pub friction: f64,
     /// Ratio of the normal velocities after and before an impact of rigid bodies \[-\]; at 1 the contact has
-    /// no dashpot. Between deformable bodies the dashpot is that of the two particles that touch, beside what
-    /// waves in the bodies take along.
+    /// no dashpot. Between deformable bodies the dashpot is that of the two particles in contact, and waves
+    /// in the bodies carry energy away too.
     #[serde(default = "elastic")]
     pub restitution: f64,
     /// Share of the heat of friction that goes into the first of the two bodies, 0 to 1; the rest goes into
-    /// the second. It warms the particles that touch or carry the surface that does, of bodies whose material
-    /// has a specific heat. Without it friction warms nothing.
+    /// the second. It heats the particles in contact, or those that carry the contact surface, of bodies
+    /// whose material has a specific heat. Without it friction does not heat the bodies.
     #[serde(default)]
     pub friction_heat: Option<f64>,
-    /// With what deformable bodies touch.
+    /// Contact surface of deformable bodies.
     #[serde(default)]
     pub surface: ContactSurface,
 }
 
-/// With what deformable bodies touch.
+/// Contact surface of deformable bodies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum ContactSurface {
     /// The surface of the shape, carried along by the particles. Bodies of which it is not known in facets,

@@ -15,7 +15,7 @@ use super::{
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
-    /// What the experiment is, in one line; shown in recordings and summaries.
+    /// Title of the experiment, in one line; shown in recordings and summaries.
     #[serde(default)]
     pub title: String,
     /// Numbers by name, each a number or an expression in others: `{ "dx": 0.005, "h": "10*dx" }`. Every
@@ -43,10 +43,10 @@ pub struct Scene {
     pub materials: BTreeMap<String, Item>,
     /// The bodies, in the order in which their particles are created.
     pub bodies: Vec<BodyDescription>,
-    /// What is imposed on bodies: supports, motions, loads, initial fields.
+    /// Conditions on bodies: supports, prescribed motions, loads, initial fields.
     #[serde(default)]
     pub conditions: Vec<Item>,
-    /// Pairs of bodies that touch. Bodies that are not named in any pair pass through each other.
+    /// Pairs of bodies with contact. Bodies that are not named in any pair pass through each other.
     #[serde(default)]
     pub contacts: Vec<Contact>,
     /// Plugins for all bodies that they fit.
@@ -57,7 +57,7 @@ pub struct Scene {
     /// Quantities that are written as functions of time.
     #[serde(default)]
     pub probes: Vec<Probe>,
-    /// What is recorded, and how often.
+    /// Recorded quantities and intervals.
     #[serde(default)]
     pub record: RecordDescription,
 }

@@ -16,7 +16,7 @@ pub struct Domain {
     /// Axes along which the domain repeats itself; a particle that leaves on one side enters on the other.
     #[serde(default)]
     pub periodic: Vec<Axis>,
-    /// What happens to a particle that leaves along an axis that is not periodic.
+    /// Treatment of a particle that leaves along an axis that is not periodic.
     #[serde(default)]
     pub outside: Outside,
 }
@@ -39,14 +39,14 @@ impl Axis {
     }
 }
 
-/// What happens to a particle that leaves the domain.
+/// Treatment of a particle that leaves the domain.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Outside {
     /// The run stops and names the particle.
     #[default]
     Error,
-    /// The particle is taken out of the run: nothing moves it or feels it any more, recordings leave it out,
-    /// and the summary counts it. The energy that leaves with it has an account of its own, `removed`. A
-    /// rigid body leaves as a whole, once all of its particles are outside.
+    /// The particle is removed: it no longer moves or interacts, recordings leave it out, and the summary
+    /// counts it. The energy that leaves with it has an account of its own, `removed`. A rigid body leaves as
+    /// a whole, once all of its particles are outside.
     Remove,
 }

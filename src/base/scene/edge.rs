@@ -8,9 +8,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum Edge {
-    /// On the surface of the stated shape, or on the stated side: the outermost held particles stand there,
-    /// nothing sees what is held behind them, and the particles beside the edge carry the share of their
-    /// stress that their cells have before it.
+    /// On the surface of the stated shape, or on the stated side: the outermost held particles are moved
+    /// there, held particles behind them do not interact, and the particles beside the edge carry the share
+    /// of their stress that their cells have in front of it.
     #[default]
     Stated,
     /// At the outermost held particles, mostly half a spacing inside: particles stay in their lattice.

@@ -9,9 +9,9 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub enum Precision {
     /// Single precision for differences between neighbours and the sums over them, in blocks of eight
-    /// particles: faster. A force is exact to some 1e-6 of those that meet in a particle, the sum of all
-    /// forces to that over the root of the number of particles, water at rest to 1e-7 of gravity for each
-    /// layer of particles above.
+    /// particles: faster. A force has an error of some 1e-6 of the pair forces on its particle, the sum of
+    /// all forces this error over the root of the number of particles, water at rest accelerations of 1e-7 of
+    /// gravity for each layer of particles above.
     Mixed,
     /// Double precision.
     Double,

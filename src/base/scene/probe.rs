@@ -29,22 +29,21 @@ pub struct Probe {
     /// they are points of space.
     #[serde(default)]
     pub follows: Option<String>,
-    /// What is taken over the particles of `on`, or over its `surface`: without it the mean, of forces the
-    /// sum.
+    /// Reduction over the particles of `on`, or over its `surface`: without it the mean, of forces the sum.
     #[serde(default)]
     pub take: Option<Take>,
-    /// A second place: the same there is subtracted.
+    /// A second place, whose value is subtracted.
     #[serde(default)]
     pub relative_to: Option<RelativeTo>,
     /// No error where nothing is at the point at the start: the probe shows NaN until something is.
     #[serde(default)]
     pub may_be_empty: bool,
     /// Whether each sample is the mean over the time since the last one, in the place of the value at its
-    /// end: measured in every step. Forces of fluids ring with their sound, which samples at intervals catch
-    /// by chance. `stop_when` compares the values all the same.
+    /// end: measured in every step. Forces of fluids oscillate with acoustic waves, so that instantaneous
+    /// samples scatter. `stop_when` compares the values all the same.
     #[serde(default)]
     pub mean: bool,
-    /// What is measured.
+    /// The measured quantity.
     pub quantity: Quantity,
     /// Time between two samples \[s\]; without it a tenth of the interval of the recording. A sample is taken
     /// at the end of the first step at or after the stated time, and the file has the time of that step.
@@ -64,7 +63,7 @@ pub struct Line {
     pub points: u32,
 }
 
-/// What is taken over a selection.
+/// Reduction over a selection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Take {
     /// The mean: of equal shares of particles, of areas of a `surface`.
@@ -92,7 +91,7 @@ pub struct RelativeTo {
     pub follows: Option<String>,
 }
 
-/// What a probe measures.
+/// Quantity measured by a probe.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub enum Quantity {
     /// Displacement from the start \[m\].
@@ -101,7 +100,7 @@ pub enum Quantity {
     Position,
     /// Velocity \[m/s\].
     Velocity,
-    /// Sum over the selection of all forces on its particles except that of what holds them \[N\]: where a
+    /// Sum over the selection of all forces on its particles except those of supports \[N\]: where a
     /// condition holds or drives the selection, the force that the body exerts on the condition. A body that
     /// hangs from its support by its weight pulls it down.
     Force,
@@ -149,11 +148,11 @@ pub enum Quantity {
     FluidForce,
     /// Torque of the force of all fluids on the selection \[N m\].
     FluidTorque {
-        /// The point about which the force turns \[m\].
+        /// Reference point of the torque \[m\].
         about: Vec3,
     },
-    /// Volume of the particles of the selection that have been taken out of the run, in the reference
-    /// configuration: what has been worn off or cut off \[m3; m2 in two dimensions\].
+    /// Reference volume of the removed particles of the selection: the volume worn off or cut off \[m3; m2 in
+    /// two dimensions\].
     RemovedVolume,
     /// Roughness of the surface of the selection, seen against its normal, from the highest particle of every
     /// column that is a spacing wide \[m\]: the arithmetic mean deviation `Ra` from the mean height, the

@@ -7,8 +7,7 @@ use super::Vec3;
 use super::contact::is_meant;
 use crate::shapes::Shape;
 
-/// The particles that meet all criteria that are given, in their places at the start. Without any criterion:
-/// all.
+/// The particles that meet all given criteria, at their initial positions. Without any criterion: all.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Select {
@@ -42,13 +41,13 @@ impl Select {
 pub enum SurfacePart {
     /// All of it.
     All,
-    /// What looks away from the body.
+    /// The parts that face away from the body.
     Outer,
-    /// What looks at the body itself: holes, bores, notches.
+    /// The parts that face the body itself: holes, bores, notches.
     Inner,
-    /// What lies on the surface of this shape too, such as that of the cylinder that a hole was cut with.
+    /// The part that lies on the surface of this shape, such as the cylinder with which a hole was cut.
     Of(Shape),
-    /// What faces this direction, to 45 degrees.
+    /// The part that faces this direction, within 45 degrees.
     Facing(Vec3),
 }
 

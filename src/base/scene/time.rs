@@ -13,7 +13,7 @@ pub struct Time {
     #[serde(default)]
     pub step: StepRule,
     /// Largest number of sub-steps that solids and rigid bodies beside a fluid take in one step of the fluid;
-    /// they take as many as their own stability limit asks for. 1: all share one step.
+    /// they take as many as their own stability limit requires. 1: all share one step.
     #[serde(default = "default_sub_steps")]
     pub sub_steps: u32,
     /// The run ends before `end` when a probe passes a value: the first of these that is met.

@@ -26,9 +26,9 @@ pub enum Shape {
         /// Radius \[m\].
         radius: f64,
     },
-    /// All that lies behind a plane; behind a line in two dimensions. It has no end: it cuts other shapes,
-    /// selects, is a tool (a `Rigid` body whose motion is prescribed), but fills no body, and fluids do not
-    /// see it.
+    /// The region behind a plane; behind a line in two dimensions. It is unbounded: it can cut other shapes,
+    /// select particles, and be a tool (a `Rigid` body whose motion is prescribed), but no particles fill it,
+    /// and fluids do not interact with it.
     HalfSpace {
         /// A point of the plane \[m\].
         point: Vec3,
@@ -95,22 +95,22 @@ pub enum Shape {
         #[serde(default = "one")]
         scale: f64,
     },
-    /// What is in any of the shapes. The lattice of the first one goes on through all.
+    /// Union of the shapes. The lattice of the first one continues through all.
     Union(Vec<Shape>),
-    /// What is in the first shape but not in the second. The lattice is that of the first one.
+    /// The first shape without the second. The lattice is that of the first one.
     Difference(Box<Shape>, Box<Shape>),
-    /// What is in all of the shapes. The lattice is that of the first one.
+    /// Intersection of the shapes. The lattice is that of the first one.
     Intersection(Vec<Shape>),
     /// The shape moved, its lattice with it.
     Translate {
-        /// What is moved.
+        /// The shape to move.
         shape: Box<Shape>,
         /// Displacement \[m\].
         by: Vec3,
     },
     /// The shape turned, its lattice with it.
     Rotate {
-        /// What is turned.
+        /// The shape to rotate.
         shape: Box<Shape>,
         /// Direction of the axis, of any length; z in two dimensions \[-\].
         #[serde(default = "z_axis")]
@@ -123,7 +123,7 @@ pub enum Shape {
     },
     /// The shape stretched along the axes. The spacing stays as it is.
     Scale {
-        /// What is stretched.
+        /// The shape to stretch.
         shape: Box<Shape>,
         /// Factors along x, y, z; z is not used in two dimensions \[-\].
         by: Vec3,

@@ -17,8 +17,8 @@ use crate::world::BodyId;
 const LABEL: &str = "traction";
 
 /// Loads a surface with a force per reference area that keeps its direction (a dead load). It acts on the
-/// surface itself, a `face` or `surface` of a Lagrangian or rigid body whose shape is known; else on the
-/// selected particles, in equal shares of the loaded area.
+/// surface itself, a `face` or `surface` of a solid or rigid body whose shape is known; else on the selected
+/// particles, in equal shares of the loaded area.
 ///
 /// A load that jumps makes the body swing; for a static answer let it grow smoothly, such as
 /// `"1e5*smoothstep(t/0.01)"`, over several periods of the slowest oscillation, or use `local_damping`.

@@ -38,7 +38,7 @@ pub enum Hardening {
         yield_stress: f64,
         /// Growth of the flow stress at large strain, Pa.
         saturation: f64,
-        /// How fast it is reached: strain 1/rate brings 63 % of it.
+        /// Rate at which it is reached: 63 % at a strain of 1/rate.
         rate: f64,
     },
     /// sigma_y = (a + b eps_p^n)(1 + c ln max(rate / reference_rate, 1))(1 - T*^m) (Johnson and Cook).

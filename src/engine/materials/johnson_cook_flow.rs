@@ -36,7 +36,7 @@ macro_rules! flow_parameters {
                 /// Temperature at and below which temperature has no influence, K.
                 #[serde(default = "room_temperature")]
                 reference_temperature,
-                /// Temperature at which the strength is gone, K.
+                /// Melting temperature, at which the flow stress is zero, K.
                 melt_temperature,
             ]
             $($own)*

@@ -35,7 +35,7 @@ macro_rules! johnson_cook {
             pub reference_rate: f64,
             /// Temperature at and below which temperature has no influence, K.
             pub reference_temperature: f64,
-            /// Temperature at which the strength is gone, K.
+            /// Melting temperature, at which the flow stress is zero, K.
             pub melt_temperature: f64,
             /// Specific heat, J/(kg K); `None` for no heating.
             pub specific_heat: Option<f64>,

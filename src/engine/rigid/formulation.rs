@@ -24,7 +24,7 @@ use crate::world::{BodyId, BodySet, ColumnSet, Mass, Mobility, Position, Velocit
 #[serde(deny_unknown_fields, default)]
 pub struct Rigid {
     /// How it may turn. Default: freely, but not at all if a condition holds or drives its translation, along
-    /// one axis or more: what is to roll then needs `Free`.
+    /// one axis or more: a body that is to roll then needs `Free`.
     pub rotation: Option<Rotation>,
     /// Angular velocity at the start, about its centre \[rad/s\].
     pub spin: Vec3,

@@ -15,7 +15,7 @@ use crate::scene::Dimension;
 pub struct Hertz {
     /// Modulus E* \[Pa\]. Default: from the materials.
     pub modulus: Option<f64>,
-    /// What the force is in two dimensions.
+    /// The force in two dimensions.
     pub plane: PlaneForce,
 }
 

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::near::NearbyMotion;
 use super::particle::EulerianParticle;
 
-/// How the force comes from the stress.
+/// Divergence operator: force from stress.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 pub enum Divergence {
     /// The exact adjoint of the velocity gradient: momentum, angular momentum and power of the stress are

@@ -31,8 +31,8 @@ use crate::world::{
     ReferencePosition, ReferenceVolume, Removed, SupportRadius, Velocity,
 };
 
-/// Solid whose neighbours and kernels are those of the present configuration: it flows, mixes and tears as
-/// far as it likes.
+/// Solid whose neighbours and kernels are those of the current configuration, for flow, mixing and separation
+/// without limit.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Eulerian {
@@ -40,7 +40,7 @@ pub struct Eulerian {
     pub kernel: KernelName,
     /// Support radius over spacing.
     pub support: f64,
-    /// How the force comes from the stress.
+    /// Divergence operator: force from stress.
     pub divergence: Divergence,
     /// Artificial stress against the tensile instability, for comparison; hourglass control does better.
     pub artificial_stress: Option<ArtificialStress>,

@@ -18,23 +18,23 @@ crate::column! {
 /// Label of the system that gives walls their weight.
 const WALL_WEIGHT: &str = "wall_weight";
 
-/// Wall: bounds the fluid, is moved by nothing but conditions and the `velocity` of its body. It needs as
-/// many layers of particles as the support of the fluid reaches, three in two dimensions and default
-/// settings.
+/// Wall: boundary of fluids, moved only by conditions and the `velocity` of its body. It needs as many layers
+/// of particles as the support of the fluid extends over, three in two dimensions and default settings.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Wall {
     /// Whether the fluid slides along the wall or sticks to it. Where nothing is stated it slides; a viscous
     /// fluid then causes a warning.
     pub slip: Option<Slip>,
-    /// Whether the wall can pull at the fluid: confined flows need it, at a free surface it would hold drops.
+    /// Whether the wall pressure may be negative: confined flows need it; at a free surface drops would stick
+    /// to the wall.
     pub suction: bool,
-    /// Velocity that the surface has beside that of its particles, such as that of a conveyor belt \[m/s\];
-    /// seen by a fluid that sticks to it.
+    /// Velocity that the surface has beside that of its particles, such as that of a conveyor belt \[m/s\],
+    /// for a fluid that sticks to it.
     pub surface_velocity: Vec3,
 }
 
-/// What a wall does to the motion of the fluid along it.
+/// Condition on the motion of the fluid along a wall.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 pub enum Slip {
     /// The fluid slides along it.
