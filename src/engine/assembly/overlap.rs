@@ -57,7 +57,8 @@ pub(super) fn problems(bodies: &[BodyPlan], scene: &Scene, folder: &Path) -> Vec
                 format!("body `{}` overlaps body `{}` at {}", second.name, first.name, place(positions[i]));
             problems.push(
                 Problem::at_path(format!("bodies[{}].shape", pair.1), message)
-                    .help("leave a gap of about the mean spacing between particles of different bodies"),
+                    .help("leave a gap of about the mean spacing between particles of different bodies")
+                    .help("a body clamped in another one: cut its place out of the other by `Difference`"),
             );
         }
     }
