@@ -8,7 +8,7 @@ use meshless::scene::Source;
 use meshless::simulation::Simulation;
 use meshless::world::{BodyId, Position, Removed, Velocity};
 
-/// A channel of water under a pressure, Pa, periodic along x, between walls that pull, with `body` in the
+/// A channel of water under a pressure, Pa, periodic along x, between walls with suction, with `body` in the
 /// place of some of its water.
 fn channel(pressure: f64, body: &str, shape: &str) -> Simulation {
     let text = format!(

@@ -58,7 +58,7 @@ impl Then {
         if self.is_liquid() {
             !(volume > 0.0 && volume <= TORN[0] && area <= TORN[1])
         } else {
-            // What is loose bears nothing, and may be pressed together again.
+            // What is loose carries nothing, and may be pressed together again.
             volume < 1.0 && area > TORN[1]
         }
     }

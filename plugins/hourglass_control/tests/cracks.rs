@@ -19,7 +19,7 @@ const FORMS: [&str; 4] = ["Variational", "Ganzenmueller2015", "Viscous", "Combin
 const SPACING: f64 = 0.1;
 const SUPPORT: f64 = 2.41 * SPACING;
 
-/// What has failed bears nothing, or all that it did before: then a crack is one for the control alone.
+/// What has failed carries nothing, or all that it did before: then a crack is one for the control alone.
 #[derive(Deserialize, JsonSchema)]
 struct Crumble {
     bears: bool,

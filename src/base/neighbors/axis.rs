@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::periodic::SHIFT;
 
 /// Share by which a cell is longer than half of the radius: more than round-off where positions are below
-/// 10^8 radii, so that the length of a cell hangs on the radius alone.
+/// 10^8 radii, so that the length of a cell depends on the radius alone.
 const ROOM: f64 = 1e-6;
 
 /// A range of coordinates, m.

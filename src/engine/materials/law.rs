@@ -112,7 +112,7 @@ pub trait SolidLaw: Send + Sync {
     /// Elastic constants at small strain.
     fn elastic(&self) -> &ElasticConstants;
 
-    /// Whether the law has no meaning for a particle that is turned inside out (det F <= 0).
+    /// Whether the law has no meaning for a particle that is inverted (det F <= 0).
     fn needs_positive_volume(&self) -> bool;
 
     /// Whether the stress depends on the path to F, as with plastic flow: where the neighbourhood of a

@@ -150,7 +150,7 @@ impl super::SimBuilder<'_> {
         self.handed.take()
     }
 
-    /// The values of type `T` that nobody has taken yet.
+    /// The values of type `T` that nothing has accepted yet.
     pub fn extensions<T: 'static>(&self) -> impl Iterator<Item = &T> {
         self.handed.all()
     }
@@ -167,7 +167,7 @@ impl super::SimBuilder<'_> {
     }
 
     /// # Errors
-    /// Something was handed in that nobody has taken.
+    /// Something was handed in that nothing has accepted.
     pub(crate) fn refuse_leftovers(&self) -> Result<(), Vec<Problem>> {
         let problems = self.handed.problems(&self.bodies);
         if problems.is_empty() { Ok(()) } else { Err(problems) }

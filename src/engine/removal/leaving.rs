@@ -7,14 +7,14 @@ use glam::DVec3;
 use crate::schedule::Shareable;
 use crate::world::{Force, sum_by_row};
 
-/// Name of the velocities of particles that are taken out in this step, in the access of systems.
+/// Name of the velocities of particles that are removed in this step, in the access of systems.
 pub(crate) const LEAVING: &str = "leaving_particles";
 
 impl Shareable for Leaving {
     const ROWS: &'static [&'static str] = &[LEAVING];
 }
 
-/// Velocities at mid-step of the particles of a phase that are taken out in this step, m/s. The last kick of
+/// Velocities at mid-step of the particles of a phase that are removed in this step, m/s. The last kick of
 /// their motion is one of forces that are only computed after they have gone, and the system that computes
 /// such forces books what that kick would have taken from them: a formulation that puts this into its phase,
 /// and contact.

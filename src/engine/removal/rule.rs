@@ -3,7 +3,7 @@
 use crate::schedule::{Access, Step, StepError};
 use crate::world::BodyId;
 
-/// Says which particles are to be taken out of the run. Plugins add one with
+/// Says which particles are to be removed from the run. Plugins add one with
 /// [`SimBuilder::add_removal_rule`](crate::plugin::SimBuilder::add_removal_rule).
 pub trait RemovalRule: Send + 'static {
     /// Appends the rows of the body that are to go, ascending; rows that are out already may be named again.

@@ -32,7 +32,7 @@ pub struct RigidState {
     pub force: DVec3,
     /// Torque about its centre at the end of the last step, N m.
     pub torque: DVec3,
-    /// Whether it has been taken out of the run: nothing moves it or feels it any more.
+    /// Whether it has been removed from the run: nothing moves it or feels it any more.
     pub gone: bool,
 }
 

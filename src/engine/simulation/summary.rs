@@ -51,7 +51,7 @@ pub struct Summary {
     pub particles: usize,
     /// Number of particles of each body.
     pub particles_of: BTreeMap<String, usize>,
-    /// Number of particles of each body that have been taken out of the run; bodies that have lost none are
+    /// Number of particles of each body that have been removed from the run; bodies that have lost none are
     /// left out.
     pub removed_of: BTreeMap<String, usize>,
     /// Time that passed from the start (or from the checkpoint on) to now, s.

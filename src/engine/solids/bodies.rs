@@ -270,7 +270,7 @@ impl SolidBodies {
         }
     }
 
-    /// Books what the pass has found; stops where a body has turned inside out.
+    /// Books what the pass has found; stops where a body has inverted.
     ///
     /// # Errors
     /// A particle with det F <= 0 whose law has no meaning for it.

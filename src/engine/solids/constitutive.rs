@@ -60,7 +60,7 @@ impl SolidSum {
             self.strain += block.energy[k] * block.volume[k];
             self.plastic_work += block.plastic_work[k] * block.volume[k];
         }
-        // What resists nothing, because it has failed, may turn inside out.
+        // What resists nothing, because it has failed, may invert.
         let mut resisting = rows.deformation.iter().zip(&block.modulus[..n]);
         let inverted = resisting.position(|(f, modulus)| f.determinant() <= 0.0 && *modulus != 0.0);
         self.inverted = inverted.map_or(0, |k| block.first + k + 1);

@@ -15,7 +15,7 @@ column! {
 /// How a particle is lost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Loss {
-    /// It has been taken out of the run.
+    /// It has been removed from the run.
     Removed = 1,
     /// It has failed.
     Failed = 2,

@@ -14,7 +14,7 @@ use crate::world::{DeformationGradient, MissingColumn, PhaseView, ReferenceVolum
 pub struct PresentVolumes(Vec<f64>);
 
 impl PresentVolumes {
-    /// Finds V_0 det F of the rows of a body, zero for particles that are removed or turned inside out, and
+    /// Finds V_0 det F of the rows of a body, zero for particles that are removed or inverted, and
     /// gives those of the whole phase.
     ///
     /// # Errors

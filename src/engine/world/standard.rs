@@ -21,7 +21,7 @@ column! {
     pub struct Mass(f64) = "mass", "m", "kg";
     /// Inverse mass per axis; zero along an axis whose motion is prescribed, so that no force moves it.
     pub struct Mobility(DVec3) = "mobility", "1/m", "1/kg";
-    /// Whether the particle has been taken out of the run. It is [`Removed::NO`] or [`Removed::YES`]. A
+    /// Whether the particle has been removed from the run. It is [`Removed::NO`] or [`Removed::YES`]. A
     /// removed particle stays a row that nothing moves: it carries no stress and no force, and lists and sums
     /// leave it out. The systems of [`removal`](crate::removal) set it, and nothing takes it back.
     pub struct Removed(u32) = "removed", "-", "1";

@@ -139,7 +139,7 @@ fn at(values: &[(f64, f64)], compression: f64) -> Result<f64> {
 fn spoiled(registry: &Registry, scene: Template, block: BodyId) -> Result<f64> {
     let mut simulation: Simulation = scene.set("bodies.block.plugins", "[]")?.build(registry)?;
     let pairs = Disorder::new(&simulation, block)?;
-    // It may end early: particles turn inside out.
+    // It may end early: particles invert.
     let _ = run(&mut simulation, |_| Ok(()));
     pairs.measure(&simulation)
 }

@@ -59,7 +59,7 @@ fn rubber_pull(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     Ok(checks)
 }
 
-/// Largest disorder on the way, without control. A particle that is turned inside out ends the run: that is
+/// Largest disorder on the way, without control. A particle that is inverted ends the run: that is
 /// disorder without bound.
 fn disorder_without(registry: &Registry, across: usize) -> Result<f64> {
     let (mut simulation, disorder) = sheet(registry, across, 0.0)?;
@@ -75,7 +75,7 @@ fn disorder_without(registry: &Registry, across: usize) -> Result<f64> {
     Ok(largest)
 }
 
-/// Whether an error says that a particle is turned inside out, or so nearly that no step is small enough.
+/// Whether an error says that a particle is inverted, or so nearly that no step is small enough.
 fn is_torn(error: &str) -> bool {
     error.contains("det F <= 0")
         || error.contains("limited by wave speed of `sheet` at a stretch factor of 0.00")

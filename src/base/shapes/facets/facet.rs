@@ -50,7 +50,7 @@ impl Facets {
         ends.iter().all(|of| *of == [1, 1])
     }
 
-    /// Puts another surface beside this one; turned inside out if it bounds a hole.
+    /// Puts another surface beside this one, with reversed orientation if it bounds a hole.
     pub(super) fn join(&mut self, other: &Self, is_hole: bool) {
         let first = self.points.len() as u32;
         self.points.extend_from_slice(&other.points);

@@ -35,7 +35,7 @@ impl ReachedSide {
     }
 
     /// Looks whether a particle on the side carries a notable force of a patch across the normal of the side,
-    /// and tells the user once.
+    /// and warns once.
     pub fn look(&mut self, patch: &Patch, step: &mut Step<'_>) {
         if self.is_told || patch.skin.body != self.body {
             return;

@@ -85,7 +85,7 @@ struct Contacts {
     /// The bodies that can fail and touch with their skins until then.
     fragile: Vec<Fragile>,
     energies: Vec<((BodyId, BodyId), ContactEnergy)>,
-    /// Rigid bodies that have been taken out of the run.
+    /// Rigid bodies that have been removed from the run.
     gone: Vec<BodyId>,
     /// Sides held along their normals that contact may reach.
     reached: Vec<ReachedSide>,
@@ -167,7 +167,7 @@ impl Contacts {
         Ok(())
     }
 
-    /// Whether a contact acts in this step: not one of a body that has been taken out of the run.
+    /// Whether a contact acts in this step: not one of a body that has been removed from the run.
     fn acts_now(&self, k: usize) -> bool {
         let is_there = |body: &BodyId| !self.gone.contains(body);
         self.acts[k].now(&self.fragile) && self.touching[k].bodies().iter().all(is_there)

@@ -67,7 +67,7 @@ impl Fragile {
         Self { carriers: skins.iter().map(|skin| Carriers::of(skin)).collect(), state: SkinState::Whole }
     }
 
-    /// Looks whether a particle of a whole skin has failed in this step, and tells the user.
+    /// Looks whether a particle of a whole skin has failed in this step, and warns.
     pub fn look(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         if self.state != SkinState::Whole {
             self.state = SkinState::Broken;

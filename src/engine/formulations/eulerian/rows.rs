@@ -53,8 +53,8 @@ pub(super) struct PointColumns<'a> {
 }
 
 impl EulerianRows {
-    /// Brings the lists up to date, with room for all that hangs on them. Positions and reference positions,
-    /// m.
+    /// Brings the lists up to date, with room for all that depends on them. Positions and reference
+    /// positions, m.
     pub fn update_lists(
         &mut self,
         position: &[DVec3],

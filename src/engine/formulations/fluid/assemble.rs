@@ -261,7 +261,7 @@ fn neighborhoods(
     bodies.into_iter().map(|id| of(id).map_err(|error| SetupError::internal(&error))).collect()
 }
 
-/// Whether the flow has no free surface, so that bodies in it can pull at it: where walls do, or where the
+/// Whether the flow has no free surface, so that bodies in it may have suction: where walls do, or where the
 /// domain has no end.
 fn is_confined(walls: &[WallBody], sim: &SimBuilder<'_>) -> bool {
     let endless = sim.periodic().axes().iter().take(sim.dimension().count()).all(|&repeats| repeats);

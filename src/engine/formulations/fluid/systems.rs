@@ -26,7 +26,7 @@ use crate::world::{
 
 /// Label of the system that finds who is near, and how fast fluids are compressed.
 const COMPRESSION: &str = "fluid_compression";
-/// Label of the system that lets fluids follow the compression beside walls that pull.
+/// Label of the system that lets fluids follow the compression beside walls with suction.
 const WALL_COMPRESSION: &str = "wall_compression";
 /// Label of the system that finds how walls move at edges.
 const EDGE_MOTION: &str = "motion_at_edges";
@@ -118,7 +118,7 @@ pub fn add(
     Ok(())
 }
 
-/// Adds what the pressure of boundaries that pull and the stretching of deformable bodies do to the
+/// Adds what the pressure of boundaries with suction and the stretching of deformable bodies do to the
 /// compression of the fluid, where there are any.
 fn add_boundary_rates(sim: &mut SimBuilder<'_>, groups: &[Group], fluid: PhaseId, boundaries: &[PhaseId]) {
     let has_suction = groups.iter().any(Group::has_suction);

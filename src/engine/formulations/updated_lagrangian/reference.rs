@@ -151,7 +151,7 @@ impl UpdatedRows {
 }
 
 /// The repeats of a body that has moved to these bounds, and how far from a side its ghosts have their
-/// sources: a body that fills a period goes along with its motion, and its sides need not be flat any more.
+/// sources: a body that fills a period moves along the axis, and its sides may deform.
 fn follow(repeats: &[Repeat], low: DVec3, high: DVec3, support: f64) -> (Vec<Repeat>, f64) {
     let mut reach = support;
     let moved = repeats.iter().map(|repeat| match *repeat {

@@ -108,7 +108,7 @@ fn a_load_that_grows_from_nothing_is_no_instability() {
 #[test]
 fn an_unstable_step_is_stopped_by_the_growth_of_energy() {
     // Twice the safe step is above the critical one: the shortest waves grow, from deformations so small that
-    // no particle turns inside out before.
+    // no particle inverts before.
     let scene = "conditions: [Fix(on: Select(body: \"right\", face: MinX))],
                  time: (end: 1.0, step: Adaptive(factor: 2.0)),";
     let (error, sim) = failure(blocks_under(1.0e-3, scene));

@@ -45,7 +45,7 @@ struct Given {
     name: String,
     /// Looks in a row at which it has given too much.
     looks: u32,
-    /// Largest share that the user has been told.
+    /// Largest share reported to the user.
     told: f64,
 }
 

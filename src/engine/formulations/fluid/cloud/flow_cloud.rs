@@ -66,7 +66,7 @@ pub struct FlowCloud {
     pub(in crate::formulations::fluid) near_boundary: NearRows,
     /// Rate of compression D of every fluid particle at the middle of the step, 1/s.
     pub(in crate::formulations::fluid) compression: Vec<f64>,
-    /// The part of D that the pressure of boundaries answers for, 1/s; zero or empty where none pulls.
+    /// The part of D that the pressure of boundaries answers for, 1/s; zero or empty where none has suction.
     pub(in crate::formulations::fluid) boundary_compression: Vec<f64>,
     /// Whether every fluid particle is within `reach` of a boundary particle, 1 if so.
     pub(in crate::formulations::fluid) is_close: Vec<u8>,
@@ -106,7 +106,7 @@ impl FlowCloud {
         self.plane
     }
 
-    /// Whether walls or bodies may pull at the fluid, as those of a flow without a free surface do.
+    /// Whether walls or bodies may have suction, as those of a flow without a free surface do.
     pub fn is_confined(&self) -> bool {
         self.groups.iter().any(Group::has_suction)
     }

@@ -26,7 +26,7 @@ pub struct Shares {
     pub total: f64,
     pub mean: DVec3,
     pub slope: DVec3,
-    /// The particle that bears all of it, if there is one.
+    /// The particle that carries all of it, if there is one.
     pub only: Option<u32>,
 }
 

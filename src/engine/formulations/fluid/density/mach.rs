@@ -106,7 +106,7 @@ pub fn relative_speed(
     speed
 }
 
-/// The largest Mach number of a body that the user has been told.
+/// The largest Mach number of a body reported to the user.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Mach {
     pub told: f64,

@@ -17,7 +17,7 @@ use crate::world::Force;
 /// How N moments of each particle act on its cluster.
 #[derive(Debug, Default)]
 pub struct ClusterForces<const N: usize> {
-    /// Whether clusters that have collapsed bear a share of the moments alone ([`Neighborhood::share`]).
+    /// Whether clusters that have collapsed carry a share of the moments alone ([`Neighborhood::share`]).
     fade: bool,
     /// Which particles have moments at all: those at the surface.
     acts: Vec<bool>,
@@ -36,7 +36,7 @@ type Rows<'a> = (&'a mut [Force], &'a mut [[DVec3; PARTS]]);
 type ShiftRows<'a, const N: usize> = (&'a mut [bool], &'a mut [MomentShift<N>]);
 
 impl<const N: usize> ClusterForces<N> {
-    /// Those of moments without a couple, of which clusters that have collapsed bear a share alone.
+    /// Those of moments without a couple, of which clusters that have collapsed carry a share alone.
     pub fn fading() -> Self {
         Self { fade: true, ..Self::default() }
     }

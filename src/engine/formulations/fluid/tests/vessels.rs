@@ -201,7 +201,7 @@ fn sound_between_walls_without_friction_has_its_speed() {
     }
 }
 
-/// Walls that do not pull take part of the work, and the run says so.
+/// Walls without suction take part of the work, and the run says so.
 #[test]
 fn a_closed_vessel_whose_walls_do_not_pull_is_warned_of() {
     let domain = "domain: (min: (-2, 0), max: (3, 1), periodic: [Y]),";
@@ -213,7 +213,7 @@ fn a_closed_vessel_whose_walls_do_not_pull_is_warned_of() {
     assert!(!told("slip: Free, suction: true"));
 }
 
-/// At a free surface walls that pull compress what slides along them, and the run says so.
+/// At a free surface walls with suction compress what slides along them, and the run says so.
 #[test]
 fn walls_that_pull_at_a_free_surface_are_warned_of() {
     let told = |suction: bool| {

@@ -73,7 +73,7 @@ impl ClosedWatch {
     }
 }
 
-/// Walls and bodies that pull at a fluid with a free surface.
+/// Walls and bodies with suction at a fluid with a free surface.
 fn pulling_at_a_surface(
     cloud: &FlowCloud,
     scratch: &mut Vec<Option<f64>>,

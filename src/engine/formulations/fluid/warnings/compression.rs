@@ -35,7 +35,7 @@ pub struct CompressionWatch {
 struct Told {
     /// Frames in sequence with a large deviation.
     frames: u32,
-    /// The largest deviation that the user has been told.
+    /// The largest deviation reported to the user.
     deviation: f64,
 }
 

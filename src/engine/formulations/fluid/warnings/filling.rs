@@ -27,7 +27,7 @@ const PART: f64 = 0.25;
 /// Watches the filling of every body.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FillingWatch {
-    /// Largest difference of each group that the user has been told.
+    /// Largest difference of each group reported to the user.
     told: Vec<f64>,
 }
 

@@ -32,7 +32,7 @@ pub struct WallEnds {
 }
 
 impl WallEnds {
-    /// That of the walls of a flow that do not pull; none without such walls.
+    /// That of the walls without suction of a flow; none without such walls.
     pub fn new(groups: &[Group], sim: &SimBuilder<'_>) -> Option<Self> {
         let walls = groups.iter().filter(|group| group.has_ends());
         // Nothing is repelled here.
