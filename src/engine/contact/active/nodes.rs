@@ -155,8 +155,9 @@ impl ContactNodes {
         &self.local_motions[self.numbers[node as usize] as usize]
     }
 
-    /// Adds up what the contacts do to every particle; `pull` says what one does to the particle at that end.
-    pub fn add_up(&mut self, contacts: &Numbers, pull: &(impl Fn(usize, ContactEnd) -> NodeLoad + Sync)) {
+    /// Sums the forces of the contacts on every particle; `load` gives the force of one on the particle at
+    /// that end.
+    pub fn add_up(&mut self, contacts: &Numbers, load: &(impl Fn(usize, ContactEnd) -> NodeLoad + Sync)) {
         let count = self.nodes.len();
         let (mut forces, mut couples) = (std::mem::take(&mut self.forces), std::mem::take(&mut self.couples));
         let (mut stiffness, mut heat) = (std::mem::take(&mut self.stiffness), std::mem::take(&mut self.heat));
@@ -172,13 +173,13 @@ impl ContactNodes {
                 let (mut force, mut couple, mut stiff, mut heat) = (DVec3::ZERO, DMat3::ZERO, 0.0, 0.0);
                 for end in all.ends(first + k) {
                     let Some(number) = contacts.of(end / 2) else { continue };
-                    let pull =
-                        pull(number, if end % 2 == 0 { ContactEnd::First } else { ContactEnd::Second });
-                    let NodeLoad { force: push, arm, .. } = pull;
-                    force += push + pull.beside;
+                    let load =
+                        load(number, if end % 2 == 0 { ContactEnd::First } else { ContactEnd::Second });
+                    let NodeLoad { force: push, arm, .. } = load;
+                    force += push + load.beside;
                     couple += DMat3::from_cols(push * arm.x, push * arm.y, push * arm.z);
-                    stiff += pull.stiffness;
-                    heat += pull.heat;
+                    stiff += load.stiffness;
+                    heat += load.heat;
                 }
                 (forces[k], couples[k], stiffness[k], heats[k]) = (force, couple, stiff, heat);
             }

@@ -150,8 +150,8 @@ impl ParticleContact {
             |key, history, energies| pairs.end(key, history, energies),
         );
         let pushes = contacts.pushes();
-        let pull = |number: usize, end: ContactEnd| pairs.pull(&pushes[number], end);
-        contact_nodes.iter_mut().for_each(|nodes| nodes.add_up(contacts.numbers(), &pull));
+        let load = |number: usize, end: ContactEnd| pairs.load(&pushes[number], end);
+        contact_nodes.iter_mut().for_each(|nodes| nodes.add_up(contacts.numbers(), &load));
         Ok((energies, least.0.min(self.first.least() + self.second.least())))
     }
 

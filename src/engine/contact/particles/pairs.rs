@@ -133,7 +133,7 @@ impl ContactPairs<'_> {
 
     /// Force of a pair on its particle at that end.
     #[inline(always)]
-    pub fn pull(&self, push: &PairPush, end: ContactEnd) -> NodeLoad {
+    pub fn load(&self, push: &PairPush, end: ContactEnd) -> NodeLoad {
         let PairPush { arms, force, stiffness, heat } = *push;
         let (force, arm, side) = match end {
             ContactEnd::First => (force, arms[0], 0),

@@ -130,8 +130,8 @@ impl Interaction {
         let begun = self.share_of_first_step(touch, scale * approach, dt, before);
         let (late, change) =
             (approach - 0.5 * dt * acceleration.dot(*normal), spring.force - before.pressure);
-        let pull = begun * self.dashpot(spring.stiffness, across, late, change, dt);
-        let pressure = (spring.force + pull).max(0.0);
+        let damping = begun * self.dashpot(spring.stiffness, across, late, change, dt);
+        let pressure = (spring.force + damping).max(0.0);
         let stiffness = self.tangential * spring.stiffness;
         let limits = Limits { stiffness, force: self.friction * pressure };
         let (tangential, drag) = self.tangential(state, limits, &inverse_mass, dt, before);

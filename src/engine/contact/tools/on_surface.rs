@@ -244,9 +244,9 @@ impl OnSurface<'_> {
         let Self { interaction, nodes, tool, .. } = self;
         let count = near.massless.max(1) as f64;
         let inverse = |body: &RigidBody| if body.is_driven() { 0.0 } else { 1.0 / body.mass };
-        let pull = |body: &RigidBody| (body.state.force / body.mass).length();
-        let (node, inverse_mass, own_pull) = match (nodes, near.held) {
-            (NodeView::Rigid(body), _) => (0, inverse(body) + inverse(tool), pull(body)),
+        let acceleration = |body: &RigidBody| (body.state.force / body.mass).length();
+        let (node, inverse_mass, own_acceleration) = match (nodes, near.held) {
+            (NodeView::Rigid(body), _) => (0, inverse(body) + inverse(tool), acceleration(body)),
             (NodeView::Particles(_), Some(node)) => (node, inverse(tool), 0.0),
             (NodeView::Particles(_), None) => return 0.0,
         };
@@ -255,7 +255,7 @@ impl OnSurface<'_> {
         }
         let touch = self.touch(node, 0.0);
         // A body at rest may fall: what it gains over the length of a node counts as its speed.
-        let gain = gravity.max(own_pull).max(pull(tool));
+        let gain = gravity.max(own_acceleration).max(acceleration(tool));
         let speed = speed + (2.0 * gain * touch.length).sqrt();
         let inverse_mass = count * inverse_mass;
         interaction.law.stiffness_of_impact(&touch, 1.0 / inverse_mass, speed) * inverse_mass

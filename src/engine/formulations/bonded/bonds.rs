@@ -8,7 +8,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use thiserror::Error;
 
-use super::reach::Ellipsoids;
+use super::ellipsoids::Ellipsoids;
 use crate::correction::MomentMatrix;
 use crate::kernels::Kernel;
 use crate::linalg::Sym3;
@@ -342,7 +342,7 @@ impl Bonds {
 mod tests {
     use glam::DMat3;
 
-    use super::super::reach::Ellipsoid;
+    use super::super::ellipsoids::Ellipsoid;
     use super::*;
 
     #[test]

@@ -170,7 +170,8 @@ impl ControlPairs<'_> {
         let own_modulus = (-modulus).if_below(0.0, Number::splat(a, own.modulus));
         let other_modulus = if own.modulus > 0.0 { modulus } else { Number::zero(a) };
         let own_before = (-before).if_below(0.0, Number::splat(a, own.modulus_before));
-        let (own_pull, other_pull) = (volume * own_modulus * own_share, volume * other_modulus * other_share);
+        let (own_stiffness, other_stiffness) =
+            (volume * own_modulus * own_share, volume * other_modulus * other_share);
         // The whole errors, of which a part is resisted, and the rest of the error along the pair.
         let (own_error, other_error) = (own_guess - arm, other_guess - arm);
         let (half, one) = (0.5 * weight, Number::splat(a, 1.0));
@@ -180,7 +181,7 @@ impl ControlPairs<'_> {
         let (own_square, other_square) =
             (own_error.length_squared() * over, other_error.length_squared() * over);
         let (own_whole, other_whole) = (volume * own_modulus * part, volume * other_modulus * part);
-        let (own_along, other_along) = (rest * own_pull, rest * other_pull);
+        let (own_along, other_along) = (rest * own_stiffness, rest * other_stiffness);
         let errors = own_along * own_share + other_along * other_share;
         let all_errors = errors + own_whole * own_square + other_whole * other_square;
         // From w = -W' / r the slope of the weight is -(W'' + w) / r.

@@ -32,9 +32,9 @@ pub fn wall_frame(groups: &[Group], records: &[FlowParticle]) -> DVec3 {
 /// Largest square of a speed, m2/s2.
 #[derive(Clone, Copy, Default, Pod, Zeroable)]
 #[repr(transparent)]
-struct Fastest(f64);
+struct LargestSpeed(f64);
 
-impl BlockSum for Fastest {
+impl BlockSum for LargestSpeed {
     fn add(&mut self, next: &Self) {
         self.0 = self.0.max(next.0);
     }
@@ -44,7 +44,7 @@ impl BlockSum for Fastest {
 fn fastest(group: &Group, records: &[FlowParticle], frame: DVec3) -> f64 {
     let square = sum_over_own_blocks(&records[group.cloud.clone()], &|_, records: &[FlowParticle]| {
         let here = records.iter().filter(|record| record.volume() > 0.0);
-        Fastest(here.map(|record| record.velocity().distance_squared(frame)).fold(0.0, f64::max))
+        LargestSpeed(here.map(|record| record.velocity().distance_squared(frame)).fold(0.0, f64::max))
     });
     square.0.sqrt()
 }

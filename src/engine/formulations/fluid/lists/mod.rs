@@ -1,6 +1,6 @@
 //! Neighbour lists, their validity, and pairs hidden by thin bodies.
 
-mod spread;
+mod displacement_bounds;
 
 mod near_rows;
 
@@ -16,10 +16,10 @@ mod gaps;
 
 mod pairs;
 
+pub use displacement_bounds::{DisplacementBounds, Growing};
 pub use drift::Skins;
 pub use gaps::{GapPairs, GapSide, SideMotion};
 pub use near_rows::{NearRow, NearRows, NearWriter};
 pub use pairs::FlowPairs;
 pub use sides::ThinBody;
-pub use spread::{DisplacementBounds, Growing};
 pub use thickness::{Thickness, Thin};

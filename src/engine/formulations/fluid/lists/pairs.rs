@@ -5,10 +5,10 @@ use std::ops::Range;
 
 use glam::DVec3;
 
+use super::displacement_bounds::DisplacementBounds;
 use super::drift::{Drift, Skins};
 use super::gaps::{GapPairs, GapSearch};
 use super::sides::{Sides, ThinBody};
-use super::spread::DisplacementBounds;
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::formulations::fluid::lists::blocks::{BlockLists, ListSources, OtherSources};
 use crate::neighbors::{Cloud, FirstOfCloud, NeighborError, NeighborList, NeighborSearch, Periodic};
