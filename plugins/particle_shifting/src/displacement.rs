@@ -38,8 +38,8 @@ impl ShiftInput {
         if !inside {
             return Shift::default();
         }
-        // The pressure of a wall works along its normal, and a shift along it would be work that nobody does.
-        // Where walls pull, it keeps them from tearing the flow off.
+        // The pressure of a wall acts along its normal, and a shift along it would be spurious work. At walls
+        // with suction the shift prevents a separation of the flow.
         let normal = toward_walls.normalize_or_zero();
         let shift = first_moment * (self.factor * strain_rate);
         let along = shift - normal * normal.dot(shift);

@@ -167,7 +167,7 @@ impl Filling<'_> {
             }
             Err(FillError::new("spacing", FillErrorKind::TooMany { estimate, limit: self.limit }))
         };
-        // The exact volume may take long where the spacing is far too small: a rough one is looked at first.
+        // The exact volume may take long where the spacing is far too small: a rough estimate comes first.
         within_limit(quadrature::volume(region, f64::INFINITY, axes), 2.0)?;
         let volume = quadrature::volume(region, spacing, axes);
         within_limit(volume, 1.0)?;

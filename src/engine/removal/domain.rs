@@ -68,7 +68,7 @@ impl RemovalRule for RemoveOutside {
             f64::from(count)
         };
         if ranks::has_several() {
-            // Each rank looks at its own, and at all where there is something to remove.
+            // Each rank checks its own rows, and all rows where there is something to remove.
             let position = view.read_own::<Position>()?;
             if for_each_own_block(&position[rows.clone()], counts, &count) == 0.0 {
                 return Ok(());

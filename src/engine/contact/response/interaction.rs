@@ -123,7 +123,7 @@ impl Interaction {
         before: &History,
     ) -> Response {
         let ContactState { touch, normal, velocity, acceleration, scale, arms, .. } = state;
-        // Without a dashpot nobody asks for masses.
+        // Without a dashpot masses are not needed.
         let inverse_mass = |n: DVec3| if self.damping_ratio == 0.0 { 0.0 } else { inverse_mass(n) };
         let across = inverse_mass(*normal);
         let approach = -velocity.dot(*normal);

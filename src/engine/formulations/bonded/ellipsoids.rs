@@ -145,7 +145,7 @@ mod tests {
             assert!((found - 1.0).abs() < 1e-12, "{found} along {axis}");
         }
         let round = [Ellipsoid::new(Ellipsoid::following(&turn)); 2];
-        // On both sides of the strains from which on the stretches are looked at one by one.
+        // On both sides of the strain from which on the stretches are computed one by one.
         for stretch in [1.99_f64, 2.01] {
             let f = turn * DMat3::from_diagonal(DVec3::new(stretch, 0.5, 0.9));
             let longest = Ellipsoid::new(Ellipsoid::following(&f)).longest;

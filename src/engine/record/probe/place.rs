@@ -118,7 +118,7 @@ fn points_of_space(
     field: &Find<'_>,
     sim: &SimBuilder<'_>,
 ) -> Result<Gauge, Vec<Problem>> {
-    // The particles of walls have the pressure that the fluid beside them is to feel, which is not that at
+    // The particles of walls have the pressure for the pair force on the fluid, which is not that at
     // their places.
     let all = || sim.bodies().iter();
     let flows = all().any(|body| body.kind == BodyKind::Fluid);

@@ -129,7 +129,7 @@ impl HotLoop for AdvanceDensity<'_> {
         let (density, compression, rate, mass, removed) = rows;
         let (mut change, mut least, mut sum) = (Change::default(), f64::INFINITY, 0.0);
         let count = density.len();
-        // Rows of all columns are as many: said once, it need not be looked at again and again.
+        // All columns have equally many rows: slicing once removes the checks of bounds.
         let (compression, rate) = (&compression[..count], &rate[..count]);
         let (mass, removed) = (&mass[..count], &removed[..count]);
         for (k, rho) in density.iter_mut().enumerate() {

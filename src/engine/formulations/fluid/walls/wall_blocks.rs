@@ -23,7 +23,7 @@ impl WallBlocks<'_> {
     /// block.
     pub fn run(&self, blocks: &mut Blocks, out: &mut [FluidBeside]) {
         let cloud = self.cloud;
-        // Who looks at gaps asks every particle beside one for its neighbours.
+        // The pass over gaps needs the neighbours of every particle beside one.
         let looks_at_all = !cloud.pairs.gaps.particles.is_empty();
         let Blocks { lists, units, packed, near, .. } = blocks;
         let first_block = lists.walls.rows();

@@ -44,7 +44,7 @@ impl WallPressure<'_> {
     /// Writes what is beside every particle of a boundary, and its neighbours within the support.
     pub fn run(&self, out: &mut [FluidBeside], near: &mut NearRows) {
         let cloud = self.cloud;
-        // Who looks at gaps asks every particle beside one for its neighbours.
+        // The pass over gaps needs the neighbours of every particle beside one.
         let looks_at_all = !cloud.pairs.gaps.particles.is_empty();
         let bodies = cloud.groups.iter().filter(|group| group.fluid().is_none());
         let mut rest = (&mut *out, near.writer());

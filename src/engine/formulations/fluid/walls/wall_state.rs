@@ -34,7 +34,7 @@ impl Run for WallState {
         (cloud.near_boundary, cloud.blocks) = (near, blocks);
         let first = cloud.fluid;
         for group in cloud.groups.iter().filter(|group| group.sticks()) {
-            // A fluid that moves with its wall feels no friction, be it that both turn like one rigid body or
+            // A fluid that moves with its wall has no friction, whether both rotate like one rigid body or
             // are sheared alike.
             let beside = &mut self.beside[group.cloud.start - first..group.cloud.end - first];
             cloud.for_each_gradient(group, beside, |fluid, gradient| {

@@ -141,7 +141,7 @@ fn deepest(
         let row = i - fluid.cloud.start;
         let near = part(cloud.near_row(i), &other.cloud);
         let Some(place) = beside.place_in_body(i, near) else { continue };
-        // The shape tells nothing of a body that has lost particles.
+        // The shape is not that of a body that has lost particles.
         if body.is_worn && !is_enclosed(cloud, i, near, body.spacing) {
             continue;
         }
