@@ -77,7 +77,7 @@ pub fn name_undamped(step: &mut Step<'_>, bodies: &BodySet) {
         rigid.iter().filter(|body| bodies.contains(body.id) && (0..3).all(|axis| !body.is_driven_along(axis)))
     {
         let text = format!(
-            "`local_damping` does not act on rigid body `{}`, which goes on moving: its contacts take its energy with a `restitution` below 1",
+            "`local_damping` does not act on rigid body `{}`, which keeps moving: its contacts dissipate energy with a `restitution` below 1",
             step.world.body(body.id).name
         );
         if !step.warnings.contains(&text) {

@@ -54,7 +54,7 @@ impl Plugin for RemoveFragments {
             return Err(SetupError::parameter(
                 "least_volume",
                 format!("`least_volume` must be from 0 to 0.9, found {volume}"),
-                "it is a volume over that of the start; what is squeezed to less is taken out",
+                "it is a volume over that of the start; particles below it are removed",
             ));
         }
         let of_dimension = if sim.dimension() == Dimension::Two { 5 } else { 7 };
@@ -63,7 +63,7 @@ impl Plugin for RemoveFragments {
             return Err(SetupError::parameter(
                 "particles",
                 format!("`particles` must be from 1 to {MOST}, found {particles}"),
-                "pieces of fewer particles are taken out; 1 takes out crushed particles alone",
+                "pieces of fewer particles are removed; 1 removes crushed particles only",
             ));
         }
         let solid = |id: &BodyId| sim.body(*id).solid_law().is_ok();

@@ -43,7 +43,7 @@ fn of_side(body: &BodyPlan, face: Face) -> Option<String> {
     }
     if is_placed {
         return Some(format!(
-            "{beside}; kernels that follow the body see its layers move apart: plastic strain beside that side is some 5 % off where the body is drawn by 4 %, and 20 % where it is drawn by 20 %; `TotalLagrangian` and `UpdatedLagrangian` bodies strain evenly"
+            "{beside}; its layers move apart within kernels of the current configuration: plastic strain beside that side is some 5 % off where the body is drawn by 4 %, and 20 % where it is drawn by 20 %; `TotalLagrangian` and `UpdatedLagrangian` bodies strain evenly"
         ));
     }
     Some(format!(

@@ -72,7 +72,7 @@ fn of_wet_side(body: &BodyPlan, axis: usize) -> Option<String> {
 fn of_part(body: &BodyPlan) -> Option<String> {
     let (way, percent) = share(OF_PART * body.spacing, body.bounds.extent().max_element())?;
     Some(format!(
-        "body `{}` is held within a shape along some axes only: that support ends up to {way} before the edge of the shape, and what it holds is up to {percent:.0} % softer; let the body end there and hold its side by `face`, hold all axes, or use a smaller spacing",
+        "body `{}` is held within a shape along some axes only: that support ends up to {way} before the edge of the shape, and the body is up to {percent:.0} % softer; let the body end there and hold its side by `face`, hold all axes, or use a smaller spacing",
         body.name
     ))
 }

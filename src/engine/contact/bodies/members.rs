@@ -16,7 +16,7 @@ use crate::world::{
 };
 
 /// Note on contact of particles for a sliding body.
-pub(in crate::contact) const BUMPS: &str = "what slides on particles meets bumps: tangential forces of up to a third of the normal force, with and without friction";
+pub(in crate::contact) const BUMPS: &str = "in sliding, the bumps of a surface of particles cause tangential forces of up to a third of the normal force, with and without friction";
 
 /// Contact data of the particles of a body.
 #[derive(Clone)]

@@ -102,7 +102,7 @@ impl UpdatedRows {
                 continue;
             }
             let text = format!(
-                "{begin} {now} of them at {}; smaller spacings or a larger `support` keep the body together, a plugin of failure lets it tear",
+                "{begin} {now} of them at {}; smaller spacings or a larger `support` keep the body together, the plugin `failure` lets it break",
                 quantity(step.clock.time, "s")
             );
             match told {

@@ -49,7 +49,7 @@ impl Remedies {
         let noise = if lacks_diffusion { "`density_diffusion()` for its noise, " } else { "" };
         let is_open = |cloud: &FlowCloud| !cloud.is_confined() && !cloud.groups.iter().any(Group::is_wall);
         let pull = if step.resources.try_get::<FlowCloud>().is_some_and(|cloud| is_open(&cloud)) {
-            "where bodies alone enclose the fluid, a domain that is periodic along all axes, in which they pull, "
+            "where bodies alone enclose the fluid, a domain that is periodic along all axes, in which they have suction, "
         } else {
             ""
         };
@@ -75,7 +75,7 @@ impl Remedies {
             });
             (least < -TENSION * largest).then(|| {
                 format!(
-                    "`{body}` is under tension, down to {}, in which particles pair and tear: `tensile_control()` among its `plugins`, or, in a closed flow, a pressure at the start that keeps it above zero, `Fluid(pressure: ...)`",
+                    "`{body}` is under tension, down to {}, which causes pairing of particles and voids: `tensile_control()` among its `plugins`, or, in a closed flow, a pressure at the start that keeps it above zero, `Fluid(pressure: ...)`",
                     quantity(least, "Pa")
                 )
             })

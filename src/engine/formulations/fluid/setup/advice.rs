@@ -40,7 +40,7 @@ pub fn unfelt_walls(walls: &[WallBody], viscous: bool, sim: &mut SimBuilder<'_>)
     };
     let unfelt = walls.iter().filter(moves).map(|wall| {
         format!(
-            "no fluid feels the `surface_velocity` of the wall `{}`, along which it slides: give it `slip: No`",
+            "the `surface_velocity` of the wall `{}` has no effect on a fluid that slides along it: give it `slip: No`",
             name(wall)
         )
     });

@@ -60,14 +60,14 @@ impl ClosedWatch {
         }
         Some(format!(
             "walls and bodies have taken {} of the work on {}, without a free surface, by {}, {:.0} % of what has compressed it: its pressure is too low by about as much, \
-             as the fluid beside them feels half of their motion{}",
+             because the fluid beside them is compressed by half of their motion{}",
             quantity(taken, "J"),
             named(cloud, step),
             quantity(step.clock.time, "s"),
             100.0 * taken / self.largest,
             match cloud.groups.iter().any(Group::is_wall) {
                 true => "; give the walls `Wall(suction: true)`",
-                false => "; bodies without walls pull in a domain that is periodic along all axes",
+                false => "; without walls, bodies have suction in a domain that is periodic along all axes",
             },
         ))
     }
@@ -81,7 +81,7 @@ fn pulling_at_a_surface(
 ) -> Option<String> {
     (!is_closed(cloud, scratch)).then(|| {
         format!(
-            "walls or bodies pull at {}, with a free surface at {}: levels are 2 to 4 % too high there, and forces of impacts up to half too large; leave `suction` out",
+            "walls or bodies with suction bound {}, with a free surface at {}: levels are 2 to 4 % too high there, and forces of impacts up to half too large; leave `suction` out",
             named(cloud, step),
             quantity(step.clock.time, "s"),
         )

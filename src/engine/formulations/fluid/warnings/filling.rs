@@ -55,7 +55,7 @@ impl FillingWatch {
                 100.0 * mean,
                 quantity(step.clock.time, "s"),
                 if mean < 1.0 {
-                    "there are gaps, or the flow has swollen: a confined flow wants a pressure above zero, others weaker shifting or none"
+                    "there are gaps, or the flow has swollen: a confined flow needs a pressure above zero, others weaker shifting or none"
                 } else {
                     "the flow has collapsed: a larger `sound_speed`, `density_diffusion()` or a smaller step may help"
                 }
