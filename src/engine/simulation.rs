@@ -260,7 +260,7 @@ impl Simulation {
     }
 
     /// Evaluates the right-hand side at the start and records the initial state. [`Simulation::step`] does
-    /// this by itself; call it to know the first limit before any step is done.
+    /// this by itself; call it to know the first limit before any step is done. An error if a system fails.
     pub fn start(&mut self) -> Result<(), RunError> {
         if self.started {
             return Ok(());
@@ -302,7 +302,8 @@ impl Simulation {
         self.checkpoint_if_due()
     }
 
-    /// Does steps until the end, or until `go_on` says no; it is asked before every step.
+    /// Does steps until the end, or until `go_on`, called before every step, returns false. Ends with the
+    /// error of the first step that fails.
     pub fn run(&mut self, mut go_on: impl FnMut(&Self) -> bool) -> Result<(), RunError> {
         self.start()?;
         while !self.is_finished() && go_on(self) {

@@ -32,7 +32,8 @@ impl ElasticConstants {
         Self { young, poisson, lambda: bulk - 2.0 / 3.0 * shear, shear, bulk }
     }
 
-    /// From the four optional parameters of a material in a scene: young and poisson, or bulk and shear.
+    /// From the four optional parameters of a material in a scene: young and poisson, or bulk and shear. An
+    /// error unless exactly one of these pairs is given, moduli (Pa) are positive, and -1 < poisson < 0.5.
     pub fn from_parameters(
         young: Option<f64>,
         poisson: Option<f64>,

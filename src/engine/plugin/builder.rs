@@ -214,8 +214,8 @@ impl<'s> SimBuilder<'s> {
         Ok(selection)
     }
 
-    /// The rows that a selection means until the first step: for what is done once, or finds them again
-    /// by [`World::rows_now`](crate::world::World::rows_now).
+    /// The rows of a selection, valid until the first step: for uses at the start only, or with
+    /// [`World::rows_now`](crate::world::World::rows_now) later. An error at `field` if nothing is selected.
     pub fn select_at_start(&self, select: &Select, field: &str) -> Result<Selection, SetupError> {
         selection::resolve(select, field, &self.bodies, self.scene.dimension, self.folder)
     }
@@ -228,9 +228,9 @@ impl<'s> SimBuilder<'s> {
         })
     }
 
-    /// Takes the motion of the selected particles along the given axes out of the hands of forces, so that a
-    /// condition can prescribe it: the name of that, or what it prescribes. Two conditions on one axis of one
-    /// particle are an error unless both say that they prescribe the same.
+    /// Sets the inverse mass of the selected particles along the given axes to zero, so that a condition can
+    /// prescribe their motion; `by` is the name of the condition, or its prescription. Two conditions on one
+    /// axis of one particle are an error unless both give the same prescription.
     pub fn prescribe(
         &mut self,
         selection: &Selection,

@@ -90,7 +90,8 @@ impl<'a> ContainerWriter<'a> {
     }
 
     /// Adds the section `name`: elements of `element_size` bytes of the type `type_name`, which is free text
-    /// that a reader compares.
+    /// that a reader compares. An error if there is a section of that name, or if the bytes are no whole
+    /// number of elements.
     pub fn section(
         &mut self,
         name: &str,
@@ -116,7 +117,7 @@ impl<'a> ContainerWriter<'a> {
         Ok(self)
     }
 
-    /// Adds `values` as the section `name`.
+    /// Adds `values` as the section `name`. Errors as [`Self::section`].
     pub fn section_of<T: NoUninit>(
         &mut self,
         name: &str,
@@ -126,7 +127,7 @@ impl<'a> ContainerWriter<'a> {
         self.section(name, type_name, size_of::<T>(), bytemuck::cast_slice(values))
     }
 
-    /// Compresses the sections and writes the file, whole or not at all.
+    /// Compresses the sections and writes the file, whole or not at all. An error if it cannot be written.
     pub fn write(&self, path: &Path, existing: Existing) -> Result<(), ContainerError> {
         let compressed: Vec<Vec<Vec<u8>>> = self
             .sections
@@ -179,7 +180,7 @@ impl Section {
         self.bytes.len() / self.element_size
     }
 
-    /// The elements as values, if they are of the type `type_name` and of the size of `T`.
+    /// The elements as values. An error unless they are of the type `type_name` and of the size of `T`.
     pub fn values<T: Pod>(&self, type_name: &str) -> Result<Vec<T>, ContainerError> {
         if self.type_name != type_name || self.element_size != size_of::<T>() {
             return Err(ContainerError::WrongType {

@@ -102,7 +102,7 @@ pub struct SeriesWriter {
 
 impl SeriesWriter {
     /// Begins the file `path` with a column `t[s]` and then `columns`, each a name and a unit (empty for
-    /// none).
+    /// none). An error if the file cannot be written.
     pub fn create(path: &Path, columns: &[(&str, &str)], existing: Existing) -> Result<Self, SeriesError> {
         let header = header(path, columns)?;
         let mut options = OpenOptions::new();
@@ -120,7 +120,8 @@ impl SeriesWriter {
     }
 
     /// Continues the file `path` of an interrupted run from its first `position` bytes, as [`Self::sync`]
-    /// gave them at the checkpoint; what follows is cut off.
+    /// gave them at the checkpoint; later rows are cut off. An error if the file is not that of the
+    /// interrupted run, or cannot be read or written.
     pub fn resume(path: &Path, columns: &[(&str, &str)], position: u64) -> Result<Self, SeriesError> {
         let expected = header(path, columns)?;
         let open = || Self::reopen(path, &expected, position);
@@ -143,7 +144,8 @@ impl SeriesWriter {
         Ok(file)
     }
 
-    /// Adds the row of the time `t` \[s\].
+    /// Adds the row of the time `t` \[s\]. An error if the number of values is not that of the columns, or
+    /// the file cannot be written.
     pub fn push(&mut self, t: f64, values: &[f64]) -> Result<(), SeriesError> {
         if values.len() != self.width {
             let path = self.path.clone();
@@ -158,7 +160,8 @@ impl SeriesWriter {
         if self.pending.len() >= BUFFER { self.flush() } else { Ok(()) }
     }
 
-    /// Hands all rows to the operating system: they survive the end of the program, however it comes.
+    /// Hands all rows to the operating system, so that they survive any end of the program. An error if the
+    /// file cannot be written.
     pub fn flush(&mut self) -> Result<(), SeriesError> {
         let pending = std::mem::take(&mut self.pending);
         if let Some(file) = &mut self.file
@@ -175,6 +178,7 @@ impl SeriesWriter {
     }
 
     /// Forces all rows to the disk and returns the length of the file in bytes, to be kept in a checkpoint.
+    /// An error if the file cannot be written.
     pub fn sync(&mut self) -> Result<u64, SeriesError> {
         self.flush()?;
         let synced = self.file.as_ref().map_or(Ok(()), File::sync_data);

@@ -64,7 +64,8 @@ pub struct Schedule {
 
 impl Schedule {
     /// Orders the systems; those without stated order keep the order in which they were added. Those of
-    /// sub-cycled phases run in the sub-steps.
+    /// sub-cycled phases run in the sub-steps. An error if the order is ambiguous or circular, or names a
+    /// system that its stage does not have.
     pub fn new(systems: Vec<System>, sub_cycled: &[PhaseId]) -> Result<Self, ScheduleError> {
         let mut slots: Vec<Option<System>> = systems.into_iter().map(Some).collect();
         let mut ordered = Vec::with_capacity(slots.len());

@@ -163,8 +163,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Takes up the state of a checkpoint of the same scene, and continues the files of the run, if it writes
-    /// any.
+    /// Restores the state of a checkpoint of the same scene, and continues the files of the run, if it writes
+    /// any. An error if scene or columns differ, or if a file cannot be continued.
     pub fn restore(&mut self, checkpoint: &Checkpoint) -> Result<(), RestoreError> {
         let CheckpointHeader { clock, ledger, next_limit, limits, sub_steps, warnings, systems, .. } =
             &checkpoint.header;

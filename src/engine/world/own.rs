@@ -18,13 +18,13 @@ use crate::ranks::{self, Halo};
 
 impl<'a> PhaseView<'a> {
     /// Column `T` for reading rows of this rank ([`own_rows`](crate::parallel::own_rows)), in a loop that is
-    /// divided among ranks. The others may be old.
+    /// divided among ranks. Rows of other ranks may be old. An error if the phase lacks the column.
     pub fn read_own<T: Column>(&self) -> Result<ArchetypeColumn<'a, T>, MissingColumn> {
         self.column(Mode::Reads)
     }
 
-    /// Column `T` for writing rows of this rank, in a loop that is divided among ranks. Whoever reads the
-    /// column next gets the rows of all.
+    /// Column `T` for writing rows of this rank, in a loop that is divided among ranks. The next read of the
+    /// column exchanges the rows of all ranks. An error if the phase lacks the column.
     pub fn write_own<T: Column>(&self) -> Result<ArchetypeColumnMut<'a, T>, MissingColumn> {
         self.mark_own(TypeId::of::<T>());
         self.column_mut()
@@ -37,7 +37,7 @@ impl<'a> PhaseView<'a> {
     }
 
     /// Column `T` for reading rows of this rank and those of its halo, which are exchanged if every rank has
-    /// its own alone. The others may be old.
+    /// its own only. Other rows may be old. An error if the phase lacks the column.
     pub fn read_halo<T: Column>(&self, halo: &Halo) -> Result<ArchetypeColumn<'a, T>, MissingColumn> {
         let column = ColumnInfo::of::<T>();
         let flag = self.own_only().flag(self.columns(), column.type_id);

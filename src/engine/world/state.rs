@@ -195,13 +195,14 @@ impl<'a> PhaseView<'a> {
         self.archetype.has::<T>()
     }
 
-    /// Column `T` for reading rows of the system's own. Panics if a system holds it for writing: the schedule
-    /// excludes that.
+    /// Column `T` for reading the system's own rows. An error if the phase lacks the column. Panics if a
+    /// system holds it for writing: the schedule excludes that.
     pub fn read<T: Column>(&self) -> Result<ArchetypeColumn<'a, T>, MissingColumn> {
         self.read_as(Mode::Reads)
     }
 
-    /// Column `T` for reading rows of neighbours too, which the system declares by `System::reads_near`.
+    /// Column `T` for reading rows of neighbours too, which the system declares by `System::reads_near`. An
+    /// error if the phase lacks the column.
     pub fn read_near<T: Column>(&self) -> Result<ArchetypeColumn<'a, T>, MissingColumn> {
         self.read_as(Mode::ReadsNear)
     }
