@@ -20,7 +20,7 @@ const INTRODUCTION: &str = "\
 <!-- Written by `meshless schema`; a test compares the two. -->
 
 A scene is a RON text: structs with named fields in round brackets, lists in square ones, maps in curly ones. Units are
-SI, and points and vectors have two or three components. Fields that have a default may be left out. Numbers that may
+SI, and points and vectors have two or three components (with two, z = 0). Fields that have a default may be left out. Numbers that may
 depend on place and time are expressions in x, y, z, t within quotes. An expression without these variables may stand
 wherever a number is expected, also in plugins: `spacing: \"0.1/8\"`.
 
@@ -51,7 +51,7 @@ fn names(registry: &Registry) -> String {
         // Writing to a String cannot fail.
         let _ = writeln!(text, "| `{name}` | {meaning} |");
     }
-    text += "\n# Fields\n\nWhat probes, recordings and ParaView files can show, by body as far as its particles have it. `velocity.x` is a \
+    text += "\n# Fields\n\nFields for probes, recordings and ParaView files; a body has those that its particles have. `velocity.x` is a \
         component of a vector, `stress.xy` one of a tensor. Plugins may add fields.\n\n| field | unit | meaning |\n|---|---|---|\n";
     for field in meshless_engine::assembly::fields(registry) {
         let unit = if field.unit() == "1" { "-" } else { field.unit() };
