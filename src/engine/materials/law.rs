@@ -26,11 +26,11 @@ pub struct Material {
 /// The constitutive law of a material.
 #[derive(Clone)]
 pub enum Law {
-    /// On the deformation.
+    /// A solid: stress from the deformation.
     Solid(Arc<dyn SolidLaw>),
-    /// On density and shear rate.
+    /// A fluid: stress from density and shear rate.
     Fluid(FluidLaw),
-    /// On nothing: walls that are no more than a surface.
+    /// None: walls, which are only a surface.
     Nothing,
 }
 
@@ -71,37 +71,35 @@ pub trait MaterialModel: DeserializeOwned + JsonSchema + 'static {
     /// Source of the law.
     const REFERENCE: &'static str;
 
-    /// Checks the parameters and makes the material.
+    /// Checks the parameters and creates the material. An error if a parameter is out of its range.
     fn build(self) -> Result<Material, ParameterError>;
 }
 
 /// A block of particles of one material: deformation and state in, stress and state out. All slices have one
 /// length.
 pub struct StressRows<'a> {
-    /// Time in which the deformation came about since the last call, s. Every accepted step makes one call.
-    /// With 0, in the evaluation before the first step, state must stay as it is.
+    /// Time since the last call, s. There is one call for every accepted step. With 0, in the evaluation
+    /// before the first step, the state must not change.
     pub dt: f64,
     /// Deformation gradient F at the end of the step; in plane strain F_33 = 1.
     pub deformation: &'a [DMat3],
-    /// Share of what a particle makes of its stress that it carries, 1 as a rule, other beside what is held.
-    /// The caller takes the outputs by that share; energy that a law books in columns of its own has to be
-    /// multiplied with it.
+    /// Share of its stress that a particle carries: usually 1, different beside supports. The caller
+    /// multiplies the outputs by this share; a law must multiply energies that it stores in its own columns.
     pub share: &'a [f64],
     /// First Piola-Kirchhoff stress P at the end of the last step, Pa; zero before the first. Empty for a law
-    /// that does not ask for it by [`SolidLaw::reads_last_stress`].
+    /// without [`SolidLaw::reads_last_stress`].
     pub stress_before: &'a [DMat3],
-    /// First Piola-Kirchhoff stress P, Pa: to be written. What stands there before the call is of no account,
-    /// in this and in the other outputs, unless they say so.
+    /// First Piola-Kirchhoff stress P, Pa: to be written. Values before the call have no meaning, in this and
+    /// in the other outputs, unless stated.
     pub stress: &'a mut [DMat3],
     /// Strain energy per reference volume, J/m3: to be written.
     pub energy: &'a mut [f64],
-    /// Young's modulus as it is now, Pa: to be written. Hourglass control resists with it.
+    /// Current Young's modulus, Pa: to be written. Hourglass control uses it as its stiffness.
     pub modulus: &'a mut [f64],
-    /// Stress beyond which a particle that has yielded flows, Pa; infinite before the call, for all that has
-    /// not.
+    /// Current flow stress of a particle that has yielded, Pa; infinite before the call, and to be left so
+    /// for others.
     pub strength: &'a mut [f64],
-    /// Plastic work done in this step per reference volume, J/m3; zero before the call. Heat that it turns
-    /// into is part of it.
+    /// Plastic work in this step per reference volume, J/m3, heat included; zero before the call.
     pub plastic_work: &'a mut [f64],
     /// The columns that the law has declared in [`SolidLaw::state`].
     pub state: StateRows<'a>,
@@ -115,14 +113,14 @@ pub trait SolidLaw: Send + Sync {
     /// Whether the law has no meaning for a particle that is inverted (det F <= 0).
     fn needs_positive_volume(&self) -> bool;
 
-    /// Whether the stress depends on the path to F, as with plastic flow: where the neighbourhood of a
-    /// particle is cut, and its F measured anew, the law then goes on from the F that it knows.
+    /// Whether the stress depends on the path to F, as with plastic flow: where neighbours of a particle are
+    /// lost and its F is fitted anew, the law then continues from the F that it knows.
     fn remembers_path(&self) -> bool {
         false
     }
 
-    /// Whether the law reads the stress of the last step, which is then kept for it. A law around another
-    /// asks for it if that one does.
+    /// Whether the law reads the stress of the last step, which is then kept for it. A law that wraps another
+    /// one returns true if that one does.
     fn reads_last_stress(&self) -> bool {
         false
     }
@@ -132,7 +130,7 @@ pub trait SolidLaw: Send + Sync {
         None
     }
 
-    /// Specific heat, J/(kg K), of laws that have a temperature which heat changes.
+    /// Specific heat, J/(kg K), of laws whose temperature changes with heat.
     fn specific_heat(&self) -> Option<f64> {
         None
     }
@@ -141,8 +139,8 @@ pub trait SolidLaw: Send + Sync {
     /// configuration.
     fn stable_step_factor(&self, stretches: &Stretches) -> f64;
 
-    /// Largest speed of longitudinal waves in the deformed material, over present lengths and with the stress
-    /// that it is under, over that of the undeformed one, at the extreme stretches of a body.
+    /// Largest speed of longitudinal waves in the deformed material, over present lengths and under the
+    /// present stress, over that of the undeformed one, at the extreme stretches of a body.
     fn wave_factor(&self, stretches: &Stretches) -> f64 {
         // Seen from the undeformed configuration it is 1 / stable_step_factor, and lengths have grown by the
         // stretch.

@@ -8,8 +8,8 @@ use crate::parallel::{Arithmetic, FourLanes, Number, Vector};
 
 /// Geometry of pairs, one a lane: of particle i with four neighbours j, or of eight particles i with one
 /// neighbour j (flows in single precision). In formulations without a reference configuration the reference
-/// vector is the current one. Lanes that hold no neighbour have `volume_j` zero: what a term adds carries the
-/// volume of j, as sums over neighbours do.
+/// vector is the current one. Lanes without a neighbour have `volume_j` zero: every contribution must be
+/// proportional to the volume of j, as in sums over neighbours.
 #[derive(Clone, Copy)]
 pub struct Pair<A: Arithmetic> {
     /// Current pair vector x_ij = x_j - x_i, m.
@@ -37,12 +37,12 @@ pub struct Pair<A: Arithmetic> {
     pub(super) reference_length: Number<A>,
     /// Whether the current configuration is the reference; the same for all pairs of a batch.
     pub(super) is_reference: bool,
-    /// The configuration whose length `weight` and `kernel` were taken at; the same for all pairs of a batch.
+    /// The configuration to whose length `weight` and `kernel` belong; the same for all pairs of a batch.
     pub weight_at: WeightAt,
 }
 
 impl<A: Arithmetic> Pair<A> {
-    /// Smoothing length h that artificial viscosity and its kin are scaled with: half the support radius, m.
+    /// Smoothing length h for artificial viscosity and similar terms: half the support radius, m.
     #[inline(always)]
     pub fn smoothing_length(&self) -> Number<A> {
         0.5 * self.support
@@ -147,14 +147,14 @@ pub trait PairTerm: Send + Sync + 'static {
     /// Columns it needs of j.
     type ReadJ: ReadSet;
 
-    /// Whether it reads [`Pair::kernel`]. A term that does not saves the kernel of every pair by saying so.
+    /// Whether it reads [`Pair::kernel`]. If no term does, the kernel of pairs is not computed.
     const READS_KERNEL: bool = true;
-    /// Whether it reads [`Pair::v_ij`]. A term that does not saves the velocities of every pair by saying so.
+    /// Whether it reads [`Pair::v_ij`]. If no term does, the velocities of pairs are not computed.
     const READS_VELOCITY: bool = true;
-    /// Whether it is for bodies with reference pair vectors alone, which solids have and fluids do not. Its
-    /// loops over fluids are then not compiled, and a fluid that is given the term is an error of the scene.
+    /// Whether it needs reference pair vectors, which solids have and fluids do not. Its loops over fluids
+    /// are then not compiled, and the term on a fluid is an error of the scene.
     const NEEDS_REFERENCE: bool = false;
-    /// Whether the term gives density rates.
+    /// Whether the term changes the density.
     const CHANGES_DENSITY: bool = false;
 
     /// Adds the contribution of j to the rates of i. Mark it `#[inline(always)]`: it is then compiled for the

@@ -64,10 +64,10 @@ pub struct BodyPlan {
     pub material: Material,
     /// Places and volumes of the particles, in row order.
     pub sites: Vec<Site>,
-    /// Shares of their stress that particles beside the edge of what is held carry, by their numbers; all
-    /// others carry all of theirs.
+    /// Shares of their stress that particles beside the edge of a support carry, by their numbers; for all
+    /// others the share is one.
     pub carried: Vec<(u32, f64)>,
-    /// Held particles behind that edge, which no other one sees, by their numbers, ascending.
+    /// Held particles behind that edge, which do not interact, by their numbers, ascending.
     pub hidden: Vec<u32>,
     /// Sides held along their normals.
     pub sides: Vec<HeldSide>,
@@ -78,7 +78,7 @@ pub struct BodyPlan {
 }
 
 impl BodyPlan {
-    /// Whether its formulation takes this.
+    /// Whether its formulation offers this.
     pub fn offers(&self, offer: Offer) -> bool {
         self.offers.contains(&offer)
     }

@@ -31,12 +31,12 @@ pub trait Plugin: DeserializeOwned + JsonSchema + 'static {
     /// Source of the method, printed in the run log.
     const REFERENCE: &'static str;
 
-    /// Whether it puts laws about those of materials. Such plugins are built before the others, which look at
-    /// the laws, wherever they stand in the scene.
+    /// Whether it wraps the laws of materials. Such plugins are built before the others, which read the laws,
+    /// wherever they are in the scene.
     const CHANGES_MATERIALS: bool = false;
 
-    /// What it holds: particles beside what is not held are put where the held part is to end, before
-    /// anything looks at them.
+    /// The particles that it holds. Held particles beside free ones are moved to the edge of the held part
+    /// before anything else uses them.
     fn support(&self) -> Option<Support<'_>> {
         None
     }
@@ -53,8 +53,8 @@ pub trait Formulation: DeserializeOwned + JsonSchema + 'static {
     const REFERENCE: &'static str;
     /// Kind of its bodies for the rest of a scene.
     const KIND: BodyKind;
-    /// Terms that it accepts for its bodies from plugins, conditions and contacts. All else that is asked of
-    /// them is an error of the scene.
+    /// Terms that it accepts for its bodies from plugins, conditions and contacts. Any other request is an
+    /// error of the scene.
     const OFFERS: &'static [Offer];
 
     /// Memory of a particle in columns, neighbours and packed rows while a run starts, B: more particles than

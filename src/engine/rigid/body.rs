@@ -32,7 +32,7 @@ pub struct RigidState {
     pub force: DVec3,
     /// Torque about its centre at the end of the last step, N m.
     pub torque: DVec3,
-    /// Whether it has been removed from the run: nothing moves it or feels it any more.
+    /// Whether it has been removed from the run.
     pub gone: bool,
 }
 
@@ -145,17 +145,17 @@ impl RigidBody {
         self.response_at(place, &Wrench { force, torque })
     }
 
-    /// Whether nothing that touches it can move it.
+    /// Whether contacts cannot move it.
     pub fn is_driven(&self) -> bool {
         self.constraint.is_complete()
     }
 
-    /// Adds what contacts do, with the torque about the centre.
+    /// Adds the force of contacts, with the torque about the centre.
     pub fn push(&mut self, contact: &Wrench) {
         self.contact.add(contact);
     }
 
-    /// Takes what the contacts of this step do.
+    /// Takes out the sum of the contacts of this step.
     pub(super) fn take_contact(&mut self) -> Wrench {
         std::mem::take(&mut self.contact)
     }

@@ -52,7 +52,7 @@ pub struct Ledger {
     bodies: usize,
     stored_at_start: f64,
     largest: f64,
-    /// Energy below which all is round-off, J.
+    /// Resolution: smaller energies are round-off, J.
     resolution: f64,
     /// Number of the system that runs.
     system: u32,
@@ -139,7 +139,7 @@ impl Ledger {
         self.stored_at_start
     }
 
-    /// Opens the energy balance: what is stored now is the energy at the start, and nothing is supplied or
+    /// Opens the energy balance: the currently stored energy is that at the start, and nothing is supplied or
     /// dissipated yet.
     pub fn open(&mut self) {
         for account in self.accounts.iter_mut().filter(|account| account.kind != AccountKind::Stored) {
@@ -155,7 +155,7 @@ impl Ledger {
         self.largest = turnover.fold(self.largest, f64::max);
     }
 
-    /// States an energy below which all is round-off, J; the largest one that is stated counts.
+    /// States a resolution below which energies are round-off, J; the largest stated one counts.
     pub fn set_resolution(&mut self, energy: f64) {
         self.resolution = self.resolution.max(energy);
     }

@@ -11,7 +11,7 @@ use crate::world::{Access, BodySet, Column, Declared, Mode, PhaseId};
 
 /// The work of a system. A closure is enough for a system without state of its own.
 pub trait Run: Send {
-    /// Does the system's work in this step.
+    /// Does the system's work in this step. An error ends the run.
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError>;
 
     /// State that must survive a restart and is in no column.
@@ -19,17 +19,17 @@ pub trait Run: Send {
         Vec::new()
     }
 
-    /// Takes up what [`Run::save`] gave. Returns `false` where the bytes are not what it wrote.
+    /// Restores the state that [`Run::save`] returned. Returns `false` if the bytes are not of that form.
     fn restore(&mut self, state: &[u8]) -> bool {
         state.is_empty()
     }
 
-    /// [`Run::save`] for a system whose state is among what systems share.
+    /// [`Run::save`] for a system whose state is in shared data.
     fn save_with(&self, _: &Resources) -> Vec<u8> {
         self.save()
     }
 
-    /// Takes up what [`Run::save_with`] gave.
+    /// Restores the state that [`Run::save_with`] returned.
     fn restore_with(&mut self, state: &[u8], _: &Resources) -> bool {
         self.restore(state)
     }
@@ -106,8 +106,8 @@ impl System {
     }
 
     /// [`System::each`] for a system whose energy has an account: `f` also returns the energy of the
-    /// particle, J. Of an account that is [`AccountKind::Stored`] it is what the particle holds now, of the
-    /// other kinds what this step has supplied or dissipated.
+    /// particle, J. For an account that is [`AccountKind::Stored`] it is the current energy of the particle,
+    /// for other kinds the energy supplied or dissipated in this step.
     pub fn each_with_energy<Q: EachRow>(
         stage: Stage,
         label: impl Into<String>,
@@ -158,20 +158,20 @@ impl System {
         self.touches(T::NAME, Mode::Adds)
     }
 
-    /// Declares access to the column of that name, or to something that systems share.
+    /// Declares access to the column of that name, or to shared data.
     pub fn touches(mut self, column: &'static str, mode: Mode) -> Self {
         self.access.push(Access { column, mode });
         self
     }
 
-    /// Declares that the system may read every column, in any row, as outputs do. It runs where nothing is
-    /// written, or after what it reads by a stated order.
+    /// Declares that the system may read every column, in any row, as outputs do. Its stage must have no
+    /// writers, or its order after them must be stated.
     pub fn reads_all(mut self) -> Self {
         self.reads_all = true;
         self
     }
 
-    /// Declares access to what systems share beside columns of one phase
+    /// Declares access to shared data other than columns of one phase
     /// ([`Shareable::ROWS`](super::Shareable::ROWS)), by the name of its rows: systems that touch them share
     /// rows whatever their phases are.
     pub fn touches_packed(mut self, rows: &'static str, mode: Mode) -> Self {
@@ -179,8 +179,8 @@ impl System {
         self
     }
 
-    /// Declares that of packed rows it reads those of this rank and what is near them alone, or asks for the
-    /// rest itself: no others are exchanged for it.
+    /// Declares that it reads only the packed rows of this rank and those near them, or requests the rest
+    /// itself: no others are exchanged for it.
     pub fn reads_own_packed(mut self) -> Self {
         self.is_local = true;
         self
@@ -211,7 +211,7 @@ impl System {
         self
     }
 
-    /// Declares that the system acts on the bodies that are due alone
+    /// Declares that the system acts only on the bodies that are due
     /// ([`StepPart::due`](super::StepPart::due)): where some of its phases are sub-cycled and others are not,
     /// it runs in the long step and in the short ones.
     pub fn by_body(mut self) -> Self {

@@ -12,21 +12,21 @@ use crate::plugin::SimBuilder;
 use crate::world::BodySet;
 
 /// A block of particles of one body, after their stress is known and before the pass over pairs that computes
-/// the force. All slices have one length. Beside particles that have failed, displacement gradient and error
-/// are those of a fit to the neighbours that hold, and what a term adds does not act on those that have
-/// failed: no bond across a crack carries a force of a term.
+/// the force. All slices have one length. Beside failed particles, displacement gradient and residual are
+/// those of a fit to the intact neighbours, and terms do not act on failed ones: no bond across a crack
+/// carries a force of a term.
 pub struct FoldedRows<'a> {
     /// Deformation gradient F_i.
     pub deformation: &'a [DMat3],
     /// Displacement gradient H_i = F_i - I, with all digits of a small strain.
     pub displacement_gradient: &'a [DMat3],
-    /// Young's modulus E_i as it is now, Pa.
+    /// Current Young's modulus E_i, Pa.
     pub modulus: &'a [f64],
-    /// Stress beyond which a particle that has yielded flows, Pa; infinite for all that has not yielded.
+    /// Current flow stress of a particle that has yielded, Pa; infinite for others.
     pub strength: &'a [f64],
     /// Values of terms stored in columns.
     pub memory: FoldedMemory<'a>,
-    /// Error of the mean deformation, `sum_j V_j w_ij |F_i X_ij - x_ij|^2`, m2 times the unit of V w.
+    /// Hourglass residual, `sum_j V_j w_ij |F_i X_ij - x_ij|^2`, m2 times the unit of V w.
     pub residual: &'a [f64],
     /// Reference volume V_i, m3.
     pub volume: &'a [f64],
@@ -56,9 +56,9 @@ impl FoldedRows<'_> {
 pub struct FoldedMemory<'a> {
     /// Modulus, Pa: column [`HourglassModulus`](crate::world::HourglassModulus); zero before the first step.
     pub modulus: &'a mut [f64],
-    /// Error of the mean deformation: column [`HourglassResidual`](crate::world::HourglassResidual).
+    /// Hourglass residual: column [`HourglassResidual`](crate::world::HourglassResidual).
     pub residual: &'a mut [f64],
-    /// Deformation gradient that fits the neighbours that hold: column
+    /// Deformation gradient fitted to the intact neighbours: column
     /// [`HourglassGradient`](crate::world::HourglassGradient).
     pub gradient: &'a mut [DMat3],
 }
@@ -83,7 +83,7 @@ split_by_rows!(FoldedMemory { modulus, residual, gradient });
 pub struct FoldedEnergy {
     /// Energy that it stores now.
     pub stored: f64,
-    /// Energy that it has given up in this step without work, because it has become softer.
+    /// Energy released in this step without work, by softening.
     pub released: f64,
 }
 
@@ -98,25 +98,25 @@ pub trait FoldedTerm: Send + Sync + 'static {
     /// stable time step follows from it.
     fn stiffness_factor(&self) -> f64;
 
-    /// Whether it adds nothing to the stress, and only leaves in columns what it has seen. Formulations
-    /// without a reference configuration take no other.
+    /// Whether it adds nothing to the stress, and only stores its input in columns. Formulations without a
+    /// reference configuration accept no other.
     fn only_looks(&self) -> bool {
         false
     }
 }
 
-/// A folded term as a plugin hands it in for bodies.
+/// A folded term of a plugin, for bodies.
 pub struct FoldedTermOfBodies {
-    /// Account of the energy ledger that holds what the term stores; none if it stores nothing.
+    /// Account of the stored energy of the term; none if it stores nothing.
     pub account: Option<String>,
-    /// Account of the energy that the term has given up without work; none if it never does.
+    /// Account of the energy released without work; none if it never is.
     pub released: Option<String>,
     /// The term.
     pub term: Box<dyn FoldedTerm>,
 }
 
 impl FoldedTermOfBodies {
-    /// Adds the term to bodies. A body whose formulation takes no such terms is an error of the scene.
+    /// Adds the term to bodies. A body whose formulation does not accept such terms is an error of the scene.
     pub fn add(self, bodies: BodySet, sim: &mut SimBuilder<'_>) {
         sim.extend_bodies(bodies, "a term that folds into the internal force", self);
     }

@@ -34,8 +34,8 @@ pub trait SolidPhase: Any + Send + Sync {
     fn neighbors(&self, row: usize, f: &mut dyn FnMut(usize, f64));
 
     /// Whether two particles that are near each other now are neighbours by kernels of the present
-    /// configuration, so that contact of a body with itself must leave them alone. By those of a reference
-    /// configuration the distance there tells it.
+    /// configuration, so that contact of a body with itself must leave them out. For kernels of a reference
+    /// configuration the distance there decides.
     fn holds_together(&self, _row: usize, _other: usize) -> bool {
         false
     }
@@ -55,13 +55,13 @@ pub trait SolidPhase: Any + Send + Sync {
     /// the body whose first row is `first`. On a particle of volume V the stress is `P = -f (x) A / V`.
     fn add_couples(&mut self, first: usize, nodes: &[u32], couples: &[DMat3]);
 
-    /// Whether the reference configuration is that of the start for good: what is pressed then stays what it
-    /// is from step to step.
+    /// Whether the reference configuration is never updated: contact then keeps its reference from step to
+    /// step.
     fn keeps_reference(&self) -> bool {
         false
     }
 
-    /// Hands stress that was added on to the ghosts.
+    /// Copies stress that was added to the ghosts.
     fn renew_ghosts(&mut self);
 }
 
@@ -72,12 +72,12 @@ impl Resources {
         self.insert_of(phase, rows);
     }
 
-    /// A phase of solids for reading; none where the phase is none.
+    /// A phase of solids for reading; none where the phase is not one of solids.
     pub fn solid(&self, phase: PhaseId) -> Option<Ref<'_, dyn SolidPhase>> {
         Some(Ref::map(self.try_get_of::<Box<dyn SolidPhase>>(phase)?, |rows| &**rows))
     }
 
-    /// A phase of solids for writing; none where the phase is none.
+    /// A phase of solids for writing; none where the phase is not one of solids.
     pub fn solid_mut(&self, phase: PhaseId) -> Option<RefMut<'_, dyn SolidPhase>> {
         Some(RefMut::map(self.try_get_mut_of::<Box<dyn SolidPhase>>(phase)?, |rows| &mut **rows))
     }

@@ -43,7 +43,7 @@ pub(in crate::contact) struct ContactState {
     /// Velocity of the first side relative to the second at that point at mid-step, m/s.
     pub velocity: DVec3,
     /// Acceleration there of the first side relative to the second by all forces of the last step, m/s2: of
-    /// rigid bodies; those on particles are in balance.
+    /// rigid bodies; the forces on particles are taken to be in equilibrium.
     pub acceleration: DVec3,
 }
 
@@ -72,7 +72,7 @@ struct Limits {
 }
 
 impl Interaction {
-    /// Whether nothing but the overlap counts.
+    /// Whether the force depends on the overlap only.
     pub fn is_elastic(&self) -> bool {
         self.friction == 0.0 && self.damping_ratio == 0.0
     }
@@ -93,18 +93,16 @@ impl Interaction {
         self.beside(spring, &ContactState { touch, ..*state }, inverse_mass, dt, before)
     }
 
-    /// What a contact held at the end of the last step that ends because a particle is taken out, and what
-    /// its force there would have taken from the motion in the last kick, J; the sides move against each
-    /// other at that velocity, m/s.
+    /// Energy at the end of the last step of a contact that ends because a particle is removed, and the work
+    /// of its force in the last kick, J; the relative velocity of the sides is given, m/s.
     pub fn held(&self, state: &ContactState, dt: f64, before: &History) -> f64 {
         let touch = Touch { overlap: before.overlap, ..state.touch };
         let force = before.pressure - before.dashpot.dot(state.normal);
         self.law.at(&touch).energy - 0.5 * dt * force * state.normal.dot(state.velocity)
     }
 
-    /// The spring of a point of a surface that remembers nothing, of an area over that for which the law
-    /// holds: where it was in the last step and will be in the next follows from the speed at which it
-    /// approaches, m/s.
+    /// The spring of a point of a surface without history, for an area over that for which the law holds: its
+    /// overlaps in the last and in the next step follow from its speed of approach, m/s.
     #[inline]
     pub fn spring(&self, touch: &Touch, area: f64, approach: f64, dt: f64) -> Spring {
         let mut spring = self.law.at(touch).over(area);
@@ -113,7 +111,7 @@ impl Interaction {
         spring
     }
 
-    /// The force of a spring with all that is beside it.
+    /// The force of a spring with dashpot and friction.
     pub fn beside(
         &self,
         spring: Spring,
@@ -152,8 +150,8 @@ impl Interaction {
         }
     }
 
-    /// A dashpot whose force jumps at the first touch has acted since then, not since half a step before: the
-    /// share of a step for which it is to act in the kicks around the end of its first one.
+    /// A dashpot whose force jumps at first contact has acted since then, and not since half a step before:
+    /// the share of a step for which it acts in the kicks around the end of its first one.
     fn share_of_first_step(&self, touch: &Touch, approach: f64, dt: f64, before: &History) -> f64 {
         if before.is_none()
             && approach * dt > 0.0
@@ -165,8 +163,8 @@ impl Interaction {
         }
     }
 
-    /// Force of a dashpot beside a spring of that stiffness that slows a motion at `speed`, N; `force` is
-    /// what the spring does to it.
+    /// Force of a dashpot beside a spring of that stiffness that slows a motion at `speed`, N; `force` is the
+    /// force of the spring.
     fn dashpot(&self, stiffness: f64, inverse_mass: f64, speed: f64, force: f64, dt: f64) -> f64 {
         if self.damping_ratio == 0.0 || inverse_mass <= 0.0 {
             return 0.0;
@@ -210,20 +208,21 @@ impl Interaction {
     }
 }
 
-/// Whether what touches has bonds: rigid bodies have none.
+    /// Whether a side has bonds: rigid bodies have none.
 fn is_held(touch: &Touch) -> bool {
     touch.depth.is_finite()
 }
 
 /// The force of a spring acts in the kicks around the end of a step, half a step each. In its first step a
-/// contact has acted since the sides met, with half of that force in the mean; in its last it acts until they
-/// part. Without this share a touch would miss up to an eighth of `k (v dt)^2` of its energy at either end.
-/// Rigid bodies take steps so short that it does not matter, and gain no energy by this guess.
+/// contact has acted since first contact, with half of that force on average; in its last it acts until
+/// separation. Without this share the energy of a contact would have an error of up to an eighth of `k (v
+/// dt)^2` at its beginning and at its end. Rigid bodies take steps so short that it does not matter, and gain
+/// no energy by this estimate.
 fn share_of_step(touch: &Touch, approach: f64, before: &History) -> f64 {
     share_of_way(touch, if before.is_none() { approach } else { before.overlap - touch.overlap })
 }
 
-/// The same, for an overlap that began or ends within the way of a step, m.
+    /// The same, for an overlap that began or ends within the displacement of a step, m.
 #[inline]
 fn share_of_way(touch: &Touch, way: f64) -> f64 {
     let overlap = touch.overlap;
@@ -237,8 +236,8 @@ impl Losses {
         self.friction += other.friction;
     }
 
-    /// Adds what the forces of a contact took at one end of the step, where the first side moves against the
-    /// second at that velocity, m/s: one of the two kicks puts half of each force into the motion.
+    /// Adds the work of the forces of a contact at one end of the step, with the velocity of the first side
+    /// relative to the second, m/s: each of the two kicks applies half of the force.
     pub fn add_work(&mut self, share: f64, history: &History, velocity: DVec3, dt: f64) {
         let half = 0.5 * share * dt * velocity;
         self.damping -= history.dashpot.dot(half);

@@ -23,7 +23,7 @@ use crate::world::{Damage, Removed};
 /// State of a particle as its neighbours treat it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(in crate::formulations) enum Mark {
-    /// It holds.
+    /// It is intact.
     #[default]
     Intact,
     /// It has failed in the last step.
@@ -32,7 +32,7 @@ pub(in crate::formulations) enum Mark {
     Failed,
 }
 
-/// A particle that holds and has failed neighbours.
+/// An intact particle with failed neighbours.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::formulations) struct CrackEdge {
     /// Row in the phase.
@@ -84,8 +84,8 @@ pub(in crate::formulations) struct Cracks {
 }
 
 impl Cracks {
-    /// Takes up what has failed since the last step. `known` holds the rows that had failed before,
-    /// ascending; the others are added to it.
+    /// Adds the particles that have failed since the last step. `known` holds the rows that had failed
+    /// before, ascending; the others are added to it.
     pub fn take_up(
         &mut self,
         known: &mut Vec<u32>,
@@ -118,7 +118,7 @@ impl Cracks {
         self.list(known, bonds, ghosts);
     }
 
-    /// Makes the marks of the given failed rows of a phase of `len` anew.
+    /// Rebuilds the marks of the given failed rows of a phase of `len`.
     pub fn rebuild(&mut self, failed: &[u32], len: usize, bonds: &Bonds, ghosts: &Ghosts) {
         self.marks.clear();
         self.marks.resize(len, Mark::Intact);
@@ -164,7 +164,7 @@ impl Cracks {
         }
     }
 
-    /// A pass has been run: what failed before it is no news any more.
+    /// Ages the marks after a pass: newly failed particles become failed ones.
     pub fn age_marks(&mut self) {
         if std::mem::take(&mut self.has_newly_failed) {
             self.edges.iter_mut().for_each(|edge| edge.is_new = false);
@@ -181,8 +181,8 @@ impl Cracks {
         if self.rows.is_empty() { &[] } else { &self.rows[until(first)..until(first + n)] }
     }
 
-    /// The force, N, that the second pass puts on a row at a crack by what folded terms have added to
-    /// corrected stresses on the other side of a bond or on this one.
+    /// The force, N, of the second pass on a row at a crack that comes from folded terms in the corrected
+    /// stresses on either side of its bonds.
     pub fn force_across(
         &self,
         row: usize,
