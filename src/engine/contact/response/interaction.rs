@@ -208,7 +208,7 @@ impl Interaction {
     }
 }
 
-    /// Whether a side has bonds: rigid bodies have none.
+/// Whether a side has bonds: rigid bodies have none.
 fn is_held(touch: &Touch) -> bool {
     touch.depth.is_finite()
 }
@@ -222,7 +222,7 @@ fn share_of_step(touch: &Touch, approach: f64, before: &History) -> f64 {
     share_of_way(touch, if before.is_none() { approach } else { before.overlap - touch.overlap })
 }
 
-    /// The same, for an overlap that began or ends within the displacement of a step, m.
+/// The same, for an overlap that began or ends within the displacement of a step, m.
 #[inline]
 fn share_of_way(touch: &Touch, way: f64) -> f64 {
     let overlap = touch.overlap;
