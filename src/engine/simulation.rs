@@ -122,7 +122,7 @@ pub enum RunError {
 }
 
 impl RunError {
-    /// Whether what the run writes could not be written: of several ranks, one alone finds that out.
+    /// Whether the output of the run could not be written: of several ranks, only the first finds that out.
     pub fn is_of_output(&self) -> bool {
         matches!(self, Self::Checkpoint(_) | Self::Record(_) | Self::Step(StepError::Output(_)))
     }
@@ -132,9 +132,9 @@ impl RunError {
 const LEAST_STEP: f64 = 1e-12;
 /// The step of such a run over the first one, at most.
 const SHRUNK: f64 = 1e-3;
-/// Steps between two looks at whether ranks are ready together.
+/// Steps between two checks whether ranks are ready together.
 const STEPS_BETWEEN_CUTS: u64 = 50;
-/// Steps between two looks at whether all ranks have the same energies.
+/// Steps between two checks whether all ranks have the same energies.
 const STEPS_BETWEEN_LOOKS: u64 = 16;
 /// Steps that no run takes.
 const MOST_STEPS: f64 = 1e15;
@@ -277,7 +277,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Does one step. If it fails, what has been recorded so far is readable, and the last checkpoint stays.
+    /// Does one step. If it fails, the recorded output is readable, and the last checkpoint stays valid.
     pub fn step(&mut self) -> Result<(), RunError> {
         let result = self.try_step();
         if let Err(error) = &result {

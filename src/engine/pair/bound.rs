@@ -191,7 +191,7 @@ pub(super) trait ErasedTerm: Send + Sync {
     fn changes_density(&self) -> bool;
     /// Whether it is for bodies with reference pair vectors alone.
     fn needs_reference(&self) -> bool;
-    /// Borrows the columns, adds the term to the chain and goes on with it.
+    /// Borrows the columns, adds the term to the chain and continues with it.
     fn bind(
         &self,
         phase: &PhaseView<'_>,

@@ -5,7 +5,7 @@ use super::term::PairTerm;
 use crate::plugin::SimBuilder;
 use crate::world::BodySet;
 
-/// A pair term as a plugin hands it in for bodies, with the account of its work.
+/// A pair term of a plugin, for bodies, with the account of its work.
 pub(crate) struct PairTermOfBodies {
     pub(super) account: String,
     pub(super) term: Box<dyn ErasedTerm>,

@@ -34,8 +34,8 @@ pub(crate) struct PhaseTerms {
 }
 
 impl PhaseTerms {
-    /// Takes the pair terms of the bodies of a phase out of the builder, and adds the booking of their work;
-    /// none where there are no terms. They are to be run in a system that declares what they touch.
+    /// Takes the pair terms of the bodies of a phase from the builder, and adds the booking of their work;
+    /// none where there are no terms. They are to be run in a system that declares their access.
     pub fn take(sim: &mut SimBuilder<'_>, phase: PhaseId) -> Result<Option<Self>, SetupError> {
         let of_phase =
             BodySet::new(sim.bodies().iter().filter(|body| body.phase == phase).map(|body| body.id));
@@ -165,7 +165,7 @@ pub(crate) struct BoundTerms<'a> {
 
 impl BoundTerms<'_> {
     /// Runs all terms on the rows of a batch, of particle `first` of the phase and those after it, and writes
-    /// what they make into a block from row `k` on. Gives the largest rates.
+    /// the results into a block from row `k` on. Returns the largest rates.
     pub fn run(&self, first: usize, batch: &PairBatch, k: usize, block: &mut TermRows<'_>) -> RateBounds {
         let rows = batch.rows();
         let density = if block.density.is_empty() { &mut [] } else { &mut block.density[k..k + rows] };
@@ -190,7 +190,7 @@ impl BoundTerms<'_> {
 pub(crate) type AllSums = [TermSums; MAX_TERMS];
 
 impl BoundTerms<'_> {
-    /// Runs all terms on some neighbours of a block of particles, and adds what they make to `sums`.
+    /// Runs all terms on some neighbours of a block of particles, and adds the results to `sums`.
     #[inline]
     pub fn run_block(&self, pairs: &BlockPairs, sums: &mut [TermSums]) {
         self.chain.block(pairs, self.plane, sums);

@@ -9,7 +9,7 @@ use crate::world::BodyId;
 /// A fault found while the scene is made into a simulation.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum SetupError {
-    /// A parameter is out of its range, or asks for what is not there.
+    /// A parameter is out of its range, or requires something that does not exist.
     #[error("{message}")]
     Parameter {
         /// Path of the parameter within the item, such as `alpha` or `on.body`; empty for the item as a

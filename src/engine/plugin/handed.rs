@@ -35,7 +35,7 @@ struct ForAll {
     by: Option<Item>,
     /// The Rust type of the value, for errors.
     type_name: &'static str,
-    /// Whether nobody needs to take it or to look at it.
+    /// Whether the value may remain unused.
     is_note: bool,
     /// Whether somebody has looked at it.
     is_seen: Cell<bool>,
@@ -133,14 +133,14 @@ impl HandedIn {
 }
 
 impl super::SimBuilder<'_> {
-    /// Hands a value to whatever part of the engine, or other plugin, takes values of its type. One that
-    /// nothing takes and nothing looks at is an error.
+    /// Passes a value to the part of the engine, or the other plugin, that takes values of its type. A value
+    /// that nothing takes or reads is an error.
     pub fn extend<T: 'static>(&mut self, value: T) {
         self.handed.put(value, false);
     }
 
-    /// Leaves a value for whoever looks for one of its type, a later item of the same plugin for instance: it
-    /// is no error if nobody does.
+    /// Leaves a value for others that look for one of its type, such as a later item of the same plugin: it
+    /// is no error if there are none.
     pub fn leave_note<T: 'static>(&mut self, value: T) {
         self.handed.put(value, true);
     }
@@ -155,7 +155,7 @@ impl super::SimBuilder<'_> {
         self.handed.all()
     }
 
-    /// Hands a value to the formulations of these bodies; `what` names it in errors: `a pair term`. A body
+    /// Passes a value to the formulations of these bodies; `what` names it in errors: `a pair term`. A body
     /// whose formulation does not take it is an error of the scene.
     pub fn extend_bodies<T: Send + Sync + 'static>(&mut self, bodies: BodySet, what: &'static str, value: T) {
         self.handed.put_for(bodies, what, value);

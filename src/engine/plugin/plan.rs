@@ -14,7 +14,7 @@ use crate::shapes::{Aabb, Site};
 use crate::world::{BodyId, Column, ColumnSet, Damage, PhaseId};
 
 /// A plane side of a body whose particles are held along its normal, and free along another axis: they have
-/// been put onto it.
+/// been moved onto it.
 #[derive(Clone, Debug)]
 pub struct HeldSide {
     /// Unit normal out of the body.

@@ -61,9 +61,9 @@ impl Prescription {
         }
     }
 
-    /// Whether both prescribe the same motion along an axis, until `end`, s, to what is at `point` in the
-    /// reference configuration. A motion that is not known agrees with none, and a velocity with a
-    /// displacement where both are zero.
+    /// Whether both prescribe the same motion along an axis, until `end`, s, of the particle at `point` in
+    /// the reference configuration. An unknown motion agrees with none, and a velocity with a displacement
+    /// where both are zero.
     pub fn agrees(&self, other: &Self, axis: usize, point: DVec3, end: f64) -> bool {
         let of = |value: &MotionOfPlace, k: u32| value(point, end * f64::from(k) / f64::from(TIMES))[axis];
         let same = |a: f64, b: f64| (a - b).abs() <= ROUNDING * a.abs().max(b.abs());

@@ -171,7 +171,7 @@ impl Registry {
         self.describe::<P>(EntryKind::Plugin, P::NAME, P::REFERENCE)
     }
 
-    /// Lets a crate register what it has: `registry.with(my_plugin::register)`.
+    /// Lets a crate register its items: `registry.with(my_plugin::register)`.
     #[must_use]
     pub fn with(mut self, register: impl FnOnce(&mut Registry)) -> Self {
         register(&mut self);
@@ -239,7 +239,7 @@ impl Registry {
         vec![item.problem_with_name(message).helps(helps)]
     }
 
-    /// Looks whether a name is known and its parameters can be read.
+    /// Checks whether a name is known and its parameters can be read.
     pub(crate) fn check(&self, kind: EntryKind, item: &Item) -> Result<(), Vec<Problem>> {
         let parse = self.parsers.get(&(kind, item.name())).ok_or_else(|| self.unknown(kind, item))?;
         parse(item)
@@ -262,7 +262,7 @@ impl Registry {
         build.ok_or_else(|| self.unknown(kind, item))
     }
 
-    /// The source of what is behind a name; empty if it has none.
+    /// The source of the item of a name; empty if it has none.
     pub(crate) fn reference(&self, kind: EntryKind, name: &str) -> &'static str {
         self.entries
             .iter()
@@ -270,7 +270,7 @@ impl Registry {
             .map_or("", |(_, entry)| entry.reference)
     }
 
-    /// Shows what a condition holds; nothing if its parameters cannot be read, which is reported where it is
+    /// The support of a condition; nothing if its parameters cannot be read, which is reported where it is
     /// built.
     pub(crate) fn support(&self, item: &Item, mut look: impl FnMut(Support<'_>)) {
         if let Some(read) = self.supports.get(item.name()) {

@@ -30,7 +30,7 @@ impl Selection {
     }
 }
 
-/// Finds what a selection means; `field` is its path in the item that holds it, for errors.
+/// Resolves a selection; `field` is its path in the item that contains it, for errors.
 pub(super) fn resolve(
     select: &Select,
     field: &str,
@@ -81,8 +81,8 @@ pub(super) fn resolve(
     Ok(Selection { parts })
 }
 
-/// From where to where a body extends, in words, and its particles, where these are elsewhere: the box of a
-/// combination of shapes may be larger than what is left of them.
+/// Extents of a body, in words, and of its particles, where these differ: the box of a combination of shapes
+/// may be larger than the combination.
 fn extent(body: &BodyPlan, place: impl Fn(DVec3) -> String) -> String {
     let Aabb { min, max } = body.bounds;
     let positions = || body.sites.iter().map(|site| site.position);

@@ -32,7 +32,7 @@ mod tests;
 
 pub use error::ContainerError;
 
-/// The version of the layout above. It rises when older programs could no longer read what is written.
+/// The version of the layout above. It rises when older programs could no longer read the files.
 pub const FORMAT_VERSION: u32 = 1;
 
 const MAGIC: [u8; 8] = *b"\x89MSHL\r\n\x1a";

@@ -99,7 +99,7 @@ pub struct RunInfo<'a> {
     pub output: &'a Path,
     /// What happens to a file that is there already.
     pub existing: Existing,
-    /// Whether the run goes on from a checkpoint: what was written up to `start_time` stays valid.
+    /// Whether the run is resumed from a checkpoint: output up to `start_time` stays valid.
     pub resumed: bool,
     /// Time of the first frame or, for a resumed run, of the checkpoint, s.
     pub start_time: f64,
@@ -147,7 +147,7 @@ pub trait Recorder: Send {
         Vec::new()
     }
 
-    /// The run starts, or goes on from a checkpoint.
+    /// The run starts, or is resumed from a checkpoint.
     ///
     /// # Errors
     /// What it writes cannot be written.
@@ -165,14 +165,14 @@ pub trait Recorder: Send {
     /// What it writes cannot be written.
     fn samples(&mut self, step: u64, time: f64, samples: &[Sample<'_>]) -> Result<(), RecordError>;
 
-    /// Makes what it has written so far readable even if the program is killed now; called after every frame
-    /// and before every checkpoint.
+    /// Makes the output so far readable even if the program is killed now; called after every frame and
+    /// before every checkpoint.
     ///
     /// # Errors
     /// What it writes cannot be written.
     fn flush(&mut self) -> Result<(), RecordError>;
 
-    /// The run is over, at its end or before; `warnings` is what the user should look at.
+    /// The run is over, at its end or before; `warnings` are those of the run.
     ///
     /// # Errors
     /// What it writes cannot be written.

@@ -16,7 +16,7 @@ use crate::schedule::{Mode, Run, Stage, Step, StepError, System};
 /// Label of the system.
 pub const STOP: &str = "stop_when";
 
-/// A condition with what it looks at.
+/// A condition with its probe.
 struct Condition {
     when: StopWhen,
     gauge: Arc<Gauge>,

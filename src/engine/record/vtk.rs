@@ -114,8 +114,7 @@ impl<'a> PointArray<'a> {
     }
 }
 
-/// Writes the points \[m\] and what is known at them at the time `time` \[s\] as a `.vtu` file, whole or not
-/// at all.
+/// Writes the points \[m\] and their data at the time `time` \[s\] as a `.vtu` file, whole or not at all.
 pub fn write_vtu(
     path: &Path,
     time: f64,

@@ -42,7 +42,7 @@ impl DomainBox {
     }
 }
 
-/// Removes what is outside of the box.
+/// Removes the particles outside of the box.
 pub(super) struct RemoveOutside {
     domain: DomainBox,
     /// Particles outside, block by block.

@@ -103,7 +103,7 @@ fn warn_of_held_rotation(id: BodyId, constraint: &Constraint, sim: &mut SimBuild
 }
 
 impl Constraint {
-    /// Checks that what is prescribed keeps a body where a symmetry plane cuts it.
+    /// Checks that a prescribed motion keeps a body where a symmetry plane cuts it.
     fn holds(&self, halved: &HalvedBody, sim: &SimBuilder<'_>) -> Result<(), SetupError> {
         let HalvedBody { body, axis } = *halved;
         let is_held =

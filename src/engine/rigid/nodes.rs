@@ -29,16 +29,16 @@ pub enum Round {
 pub struct RigidNode {
     /// The place in the reference configuration, m.
     pub point: DVec3,
-    /// Outward normal of the surface there; zero on edges and corners, and for what is round.
+    /// Outward normal of the surface there; zero on edges and corners, and for round nodes.
     normal: DVec3,
     /// Shape of the node.
     pub round: Round,
-    /// Length that it stands for, m.
+    /// Length that it represents, m.
     pub size: f64,
 }
 
 impl RigidNode {
-    /// Radius of what is round, else zero, m.
+    /// Radius of a round node, else zero, m.
     pub fn radius(&self) -> f64 {
         match self.round {
             Round::Point => 0.0,
@@ -60,7 +60,7 @@ impl RigidNode {
     }
 }
 
-/// The nodes with which a rigid body touches the surfaces of other rigid bodies; what is round comes first.
+/// The contact nodes of a rigid body on the surfaces of other rigid bodies; round ones come first.
 #[derive(Clone, Debug)]
 pub struct Nodes {
     list: Vec<RigidNode>,

@@ -60,7 +60,7 @@ impl Outline {
         (distance - radius).abs() < ON_IT * radius
     }
 
-    /// The centres of circles that stand for it, not much more than a spacing apart, and their shape.
+    /// The centres of circles that represent it, not much more than a spacing apart, and their shape.
     pub fn rims(&self, spacing: f64) -> (Vec<DVec3>, Rim) {
         match *self {
             Self::Ball { center, radius } => (vec![center], Rim { axis: DVec3::ZERO, radius }),

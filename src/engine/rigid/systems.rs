@@ -111,7 +111,7 @@ impl RigidBody {
         Ok(self.kinetic() - before)
     }
 
-    /// Power of force and torque on what is prescribed, W: what the constraints take up.
+    /// Power of force and torque on the prescribed motion, W: the work on the constraints.
     fn constraint_power(&self) -> f64 {
         let held = DVec3::ONE - self.constraint.free_axes();
         let turning = match self.constraint.turning {
@@ -314,9 +314,8 @@ fn share_out(body: &RigidBody, contact: Wrench, step: &Step<'_>) -> Result<(), S
     Ok(())
 }
 
-/// Proposes the limit of the own motion of a body, whose velocity changes by `driven`, m/s2, where it is
-/// prescribed. Its velocity is no limit: against what it may touch the contacts know it, and nothing else
-/// does.
+/// Proposes the limit of the motion of a body itself, whose velocity changes by `driven`, m/s2, where it is
+/// prescribed. Its velocity is no limit: only contacts depend on it, and they have limits of their own.
 fn propose(body: &RigidBody, driven: DVec3, end: f64, step: &mut Step<'_>) {
     let spacing = step.world.body(body.id).spacing;
     let turning = body.state.angular_velocity.length();

@@ -88,8 +88,8 @@ impl Ledger {
         self.system = system as u32;
     }
 
-    /// States the energy now held, J. It replaces what the same system has stated before; what several
-    /// systems state of one account and body is added up.
+    /// States the current energy, J. It replaces the earlier statement of the same system; those of several
+    /// systems for one account and body are added.
     pub fn set(&mut self, account: AccountId, body: BodyId, energy: f64) {
         let Account { per_body, stated, .. } = &mut self.accounts[account.0];
         let own = stated.iter().position(|(system, _)| *system == self.system).unwrap_or_else(|| {

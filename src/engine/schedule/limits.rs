@@ -49,7 +49,7 @@ const MEMORY: u32 = 500;
 /// The three limits are infinite where there is none, so that their texts stay in one place of memory.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct TimeStepLimits {
-    /// Whether there is a proposal, be it an infinite one: what has failed entirely limits nothing.
+    /// Whether there is a proposal, possibly an infinite one: a body that has failed entirely has no limit.
     any: bool,
     proposed: Limit,
     /// Smallest limit of the last `age` steps.
@@ -75,8 +75,8 @@ impl TimeStepLimits {
         }
     }
 
-    /// The smallest limit of this step and of those not long ago; none if nothing has been proposed for this
-    /// step. What has been proposed is taken.
+    /// The smallest limit of this step and of recent ones; none if nothing has been proposed for this step.
+    /// The proposals are consumed.
     pub fn take(&mut self) -> Option<&Limit> {
         if !std::mem::take(&mut self.any) {
             return None;

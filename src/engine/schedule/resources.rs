@@ -14,7 +14,7 @@ use crate::world::{Mode, PhaseId, Watch};
 /// such a value has declared access to one of these: reading for reading, writing or adding for writing.
 /// Otherwise the run ends with an error that says what to declare.
 pub trait Shareable: Send + 'static {
-    /// Names of what it holds, as they stand in the access of systems.
+    /// Names of its rows in the access of systems.
     const ROWS: &'static [&'static str];
 }
 
@@ -89,7 +89,7 @@ impl Resources {
         self.completed_by.iter().for_each(|complete| complete(self));
     }
 
-    /// From now on the accesses of systems are held against what they have declared.
+    /// From now on the accesses of systems are checked against their declarations.
     pub(crate) fn watch_by(&mut self, watch: Arc<Watch>) {
         self.watch = Some(watch);
     }

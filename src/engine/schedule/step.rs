@@ -120,7 +120,7 @@ pub enum StepError {
 }
 
 impl StepError {
-    /// The same with what is known about the cause, which starts with `: `.
+    /// The same with the known cause, which starts with `: `.
     #[must_use]
     pub fn with_detail(mut self, text: &str) -> Self {
         if let Self::Unstable { detail, .. } = &mut self {

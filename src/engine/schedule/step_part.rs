@@ -35,8 +35,7 @@ impl<'s> StepPart<'s> {
     }
 
     /// Number of steps done before this one by the clock of this part of the step: sub-steps by that of
-    /// sub-cycled phases. What a system of sub-cycled bodies does in every so many of its steps, it counts by
-    /// this.
+    /// sub-cycled phases. Systems of sub-cycled bodies that act every so many steps count by this.
     pub fn number(self) -> u64 {
         self.number
     }

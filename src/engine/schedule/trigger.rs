@@ -23,7 +23,7 @@ impl Trigger {
         Self { interval, next: 1 }
     }
 
-    /// Goes on from where a checkpoint left it, unless the interval is another one now.
+    /// Continues from the state in a checkpoint, unless the interval has changed.
     pub fn resume(&mut self, saved: Trigger) {
         if saved.interval == self.interval {
             *self = saved;

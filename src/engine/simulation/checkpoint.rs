@@ -40,7 +40,7 @@ struct CheckpointHeader {
     systems: Vec<(String, Vec<u8>)>,
 }
 
-/// Why a checkpoint cannot be taken up.
+/// Error of restoring a checkpoint.
 #[derive(Debug, Error)]
 pub enum RestoreError {
     /// The file is missing, damaged, or of another version.

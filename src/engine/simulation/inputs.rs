@@ -71,7 +71,7 @@ impl Inputs {
         self.scene_file.clone_from(&saved.scene_file);
     }
 
-    /// The first file that is no longer what it was in `saved`.
+    /// The first file that differs from its state in `saved`.
     pub fn changed_since<'s>(&self, saved: &'s Self) -> Option<&'s str> {
         let differs = |old: &&InputFile| self.files.iter().any(|new| new.name == old.name && new != *old);
         saved.files.iter().find(differs).map(|file| file.name.as_str())

@@ -58,7 +58,7 @@ impl SubSteps {
         Some((f64::from(self.largest) * next.dt, next))
     }
 
-    /// Number of sub-steps in what is left of the long step, s.
+    /// Number of sub-steps in the rest of the long step, s.
     fn count(&self, rest: f64) -> f64 {
         match &self.state.next {
             Some(limit) if self.largest > 1 => (rest / (self.factor * limit.dt) - 1e-9).ceil().max(1.0),

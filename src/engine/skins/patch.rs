@@ -381,7 +381,7 @@ impl Patch {
         power * dt
     }
 
-    /// Hands the forces on the vertices on to the particles.
+    /// Adds the forces on the vertices to the particles.
     pub fn hand_on(&mut self) {
         let Self { skin, forces, couples, has_couples, starts, ends, following, .. } = self;
         let couples = has_couples.then_some(&couples[..]);
@@ -418,7 +418,7 @@ impl Patch {
         self.vertices.iter().map(|&vertex| (vertex, self.last[vertex as usize])).collect()
     }
 
-    /// Takes up what was saved; the next selection keeps it.
+    /// Restores the saved state; the next selection keeps it.
     pub fn restore(&mut self, saved: &[(u32, Last)]) {
         if self.vertices.is_empty() {
             self.vertices.extend(saved.iter().map(|entry| entry.0));

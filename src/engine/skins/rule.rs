@@ -1,6 +1,6 @@
 //! Integration points of facets, with equal weights.
 
-/// Points of a facet, by their shares of its vertices; each stands for the same part of it.
+/// Points of a facet, by their shares of its vertices; each represents the same part of it.
 #[derive(Clone, Debug)]
 pub(crate) struct QuadratureRule {
     points: Vec<[f64; 3]>,

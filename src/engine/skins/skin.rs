@@ -187,7 +187,7 @@ impl Skin {
     }
 }
 
-/// Leaves out the facets that lie where the body goes on.
+/// Leaves out the facets inside the body where it continues.
 fn leave_out(facets: &mut Facets, repeat: &Repeat, tolerance: f64) {
     let Facets { axes, points, corners } = facets;
     let is_in = |vertex: &u32, at: f64| (points[*vertex as usize][repeat.axis()] - at).abs() < tolerance;

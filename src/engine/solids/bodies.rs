@@ -45,7 +45,7 @@ pub struct SolidBody {
     stretch_factor: f64,
 }
 
-/// Steps between two looks at the stretches: they change slowly against the stable step.
+/// Steps between two evaluations of the stretches: they change slowly against the stable step.
 const STRETCH_INTERVAL: u64 = 10;
 
 /// All bodies of a solid formulation, in the order of the scene.
@@ -160,7 +160,7 @@ impl SolidBodies {
         Ok(Self { phase, bodies, terms, columns, can_fail, found: Vec::new(), sums: Vec::new() })
     }
 
-    /// That all folded terms only look, for formulations that apply none.
+    /// Checks that all folded terms only read, for formulations that apply none.
     ///
     /// # Errors
     /// The first body with another term.
@@ -201,12 +201,12 @@ impl SolidBodies {
         &self.found
     }
 
-    /// Adds the energy of the difference of Laplacians of body `k` to what the last pass has found.
+    /// Adds the energy of the difference of Laplacians of body `k` to the results of the last pass.
     pub fn add_hessian(&mut self, k: usize, energy: FoldedEnergy) {
         self.found[k].hessian = energy;
     }
 
-    /// Adds the energy of the control along pairs of body `k` to what the last pass has found.
+    /// Adds the energy of the control along pairs of body `k` to the results of the last pass.
     pub fn add_control(&mut self, k: usize, energy: FoldedEnergy) {
         self.found[k].control = energy;
     }
@@ -230,8 +230,7 @@ impl SolidBodies {
     }
 
     /// Runs the pass over a body, block by block: `block` is called with the rows of the block, those of
-    /// `own`, which the formulation writes itself, and memory for a block, which holds what the last one has
-    /// left.
+    /// `own`, which the formulation writes itself, and memory for a block, with the contents of the last one.
     pub fn run<O: Split>(
         &mut self,
         pass: BodyPass<'_>,
@@ -270,7 +269,7 @@ impl SolidBodies {
         }
     }
 
-    /// Books what the pass has found; stops where a body has inverted.
+    /// Books the results of the pass; stops where a body has inverted.
     ///
     /// # Errors
     /// A particle with det F <= 0 whose law has no meaning for it.
@@ -285,8 +284,8 @@ impl SolidBodies {
         Ok(())
     }
 
-    /// Proposes the stable step of each body, s, which is that of its undeformed state times what its
-    /// stretches make of it.
+    /// Proposes the stable step of each body, s: that of its undeformed state times a factor of its
+    /// stretches.
     ///
     /// # Errors
     /// The phase has no deformation gradient.
@@ -359,7 +358,7 @@ impl SolidBodies {
         postcard::to_stdvec(&self.stretch_factors()).unwrap_or_default()
     }
 
-    /// Takes up what [`SolidBodies::save`] gave. Returns `false` where it does not fit.
+    /// Restores the state of [`SolidBodies::save`]. Returns `false` where it does not fit.
     pub fn restore(&mut self, state: &[u8]) -> bool {
         postcard::from_bytes::<Vec<f64>>(state).is_ok_and(|factors| self.restore_stretch_factors(&factors))
     }
@@ -369,14 +368,14 @@ impl SolidBodies {
         self.bodies.iter().map(|body| body.stretch_factor).collect()
     }
 
-    /// Takes up what [`SolidBodies::stretch_factors`] gave. Returns `false` where it does not fit.
+    /// Restores the factors of [`SolidBodies::stretch_factors`]. Returns `false` where they do not fit.
     pub fn restore_stretch_factors(&mut self, factors: &[f64]) -> bool {
         self.bodies.iter_mut().zip(factors).for_each(|(body, factor)| body.stretch_factor = *factor);
         factors.len() == self.bodies.len()
     }
 }
 
-/// The bodies whose formulation takes what is offered.
+/// The bodies whose formulation has an offer.
 fn offering(ids: &[BodyId], offer: Offer, sim: &SimBuilder<'_>) -> BodySet {
     BodySet::new(ids.iter().copied().filter(|id| sim.body(*id).offers(offer)))
 }

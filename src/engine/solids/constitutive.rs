@@ -53,7 +53,7 @@ impl SolidSum {
         self.strain + terms.map(|term| term.stored).sum::<f64>()
     }
 
-    /// Adds the energies of a block, and looks for inverted particles.
+    /// Adds the energies of a block, and checks for inverted particles.
     pub fn close(&mut self, rows: &SolidRows<'_>, block: &SolidBlock) {
         let n = rows.deformation.len();
         for k in 0..n {
@@ -117,7 +117,7 @@ impl<'a> SolidColumns<'a> {
     }
 
     /// Those of a phase whose pass is divided among ranks: each computes its own rows, and the formulation
-    /// exchanges what it writes beside the columns.
+    /// exchanges the other results.
     ///
     /// # Errors
     /// The formulation has not declared deformation gradient and stress.
@@ -194,10 +194,10 @@ pub struct SolidBlock {
     pub volume: [f64; BLOCK],
     /// Strain energy per reference volume, J/m3.
     energy: [f64; BLOCK],
-    /// Young's modulus as it is now, Pa.
+    /// Current Young's modulus, Pa.
     modulus: [f64; BLOCK],
     strength: [f64; BLOCK],
-    /// Share of what its stress makes that a particle carries.
+    /// Share of its stress that a particle carries.
     share: [f64; BLOCK],
     /// Plastic work of the step per reference volume, J/m3.
     plastic_work: [f64; BLOCK],
@@ -226,8 +226,8 @@ thread_local! {
 }
 
 impl SolidBlock {
-    /// Leaves the share of what a particle holds and resists that it carries: all else would hold it against
-    /// rotation.
+    /// Multiplies energy and modulus by the share that a particle carries; with the full values the rest
+    /// would resist rotation.
     fn carry(&mut self, k: usize) {
         let share = self.share[k];
         self.energy[k] *= share;
@@ -238,7 +238,7 @@ impl SolidBlock {
         }
     }
 
-    /// Lends the block of this thread, which holds what the last one has left, for the rows from `first` on.
+    /// Lends the block of this thread, with the contents of the last use, for the rows from `first` on.
     #[inline]
     pub(super) fn with<R>(first: usize, work: impl FnOnce(&mut Self) -> R) -> R {
         SCRATCH.with_borrow_mut(|block| {
@@ -327,7 +327,7 @@ impl Constitutive<'_> {
         refit::to_column(refits, first, rows.stress);
     }
 
-    /// The rows that folded terms add to; `stress` is what the formulation has made of the stress.
+    /// The rows that folded terms add to; `stress` is the corrected stress of the formulation.
     pub fn folded<'b>(
         &self,
         rows: &'b mut SolidRows<'_>,

@@ -31,7 +31,7 @@ crate::column! {
     pub struct DampingStress(crate::linalg::Sym3) = "damping_stress", "S_v", "Pa";
 }
 
-/// Account of what the damping takes.
+/// Account of the energy dissipated by the damping.
 pub(super) const ACCOUNT: &str = "coupling_damping";
 
 /// Handed to solids whose sub-steps are damped, by what sub-cycles them.
@@ -57,7 +57,7 @@ pub(super) struct Damping<'a> {
     pub deformation: &'a [DMat3],
     /// H = F - I.
     pub gradient: &'a [DMat3],
-    /// Young's modulus as it is now, Pa.
+    /// Current Young's modulus, Pa.
     pub modulus: &'a [f64],
     pub volume: &'a [f64],
 }

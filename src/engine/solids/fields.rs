@@ -20,9 +20,9 @@ pub(crate) fn fields() -> [Field; 2] {
     [error, neighbors].map(|field| field.only_for(BodyKind::Solid))
 }
 
-/// Root mean square of |F_i X_ij - x_ij| / |X_ij| over the neighbours. At a crack it is that of the
-/// neighbours that hold, with the F that fits these, as the control sees it; zero for a particle that has
-/// failed or has too few neighbours.
+/// Root mean square of |F_i X_ij - x_ij| / |X_ij| over the neighbours. At a crack it is that of the intact
+/// neighbours, with the F fitted to these, as in the control; zero for a particle that has failed or has too
+/// few neighbours.
 fn hourglass_residual(input: &FieldInput<'_>, out: &mut Vec<f64>) -> Result<(), MissingColumn> {
     let (view, _) = input.world.body_view(input.body);
     let Some(solid) = input.resources.solid(input.world.body(input.body).phase) else { return Ok(()) };

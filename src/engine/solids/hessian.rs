@@ -47,7 +47,7 @@ crate::column! {
 
 /// Account of the energy of the frame-indifferent form.
 pub(super) const ACCOUNT: &str = "hessian";
-/// Account of what it has given up without work, because the material has become softer.
+/// Account of the energy released without work, by softening of the material.
 pub(super) const RELEASED: &str = "hessian_released";
 
 impl BlockSum for FoldedEnergy {

@@ -41,8 +41,8 @@ impl LocalMotion {
         self.velocity + self.rate * arm
     }
 
-    /// Mobility of that point along each axis, 1/kg: how much a force on it speeds it up. What the neighbours
-    /// add, by the squares of their weights, is a twentieth of it, and left out.
+    /// Mobility of that point along each axis, 1/kg: its inverse mass for a force. The contribution of the
+    /// neighbours, by the squares of their weights, is a twentieth of it, and left out.
     pub fn mobility(&self, arm: DVec3) -> DVec3 {
         let own = 1.0 - self.own.dot(arm);
         self.mobility * (own * own)

@@ -28,7 +28,7 @@ impl PairControl {
 
 /// Account of the energy that control holds.
 const ACCOUNT: &str = "hourglass";
-/// Account of what it has given up without work, because the material has become softer.
+/// Account of the energy released without work, by softening of the material.
 const RELEASED: &str = "hourglass_released";
 
 /// Books the energy of a body.

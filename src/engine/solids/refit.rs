@@ -44,8 +44,8 @@ impl Refits {
     }
 }
 
-/// Before the law: what the columns of a row hold becomes what the law sees. The stress column is the one
-/// whose Cauchy stress with F is that of the law, P C^T / det C.
+/// Before the law: replaces the columns of a row by the input of the law. The stress column is the one whose
+/// Cauchy stress with F is that of the law, P C^T / det C.
 pub(super) fn to_law(refits: &[(u32, DMat3)], first: usize, deformation: &mut [DMat3], stress: &mut [DMat3]) {
     for (row, c) in refits {
         let k = *row as usize - first;
@@ -69,7 +69,7 @@ pub(super) fn from_law(
     }
 }
 
-/// When the forces are computed: what the stress column holds.
+/// After the law: the stress column for the forces.
 pub(super) fn to_column(refits: &[(u32, DMat3)], first: usize, stress: &mut [DMat3]) {
     for (row, c) in refits {
         stress[*row as usize - first] *= 1.0 / c.determinant();

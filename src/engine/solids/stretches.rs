@@ -7,8 +7,7 @@ use crate::materials::Stretches;
 use crate::parallel::{BlockSum, Largest, sum_over_own_blocks};
 use crate::world::{Damage, DeformationGradient};
 
-/// The extreme stretches of the particles of a body that have not failed: what is left of a failed one may
-/// have any shape.
+/// The extreme stretches of the intact particles of a body: failed ones may have any shape.
 pub(super) fn of_body(gradient: &[DeformationGradient], damage: Option<&[Damage]>) -> Stretches {
     let intact = |row: usize| damage.is_none_or(|damage| damage[row].0 < 1.0);
     sum_over_own_blocks(gradient, &|first, rows: &[DeformationGradient]| {

@@ -2,7 +2,7 @@
 
 use crate::plugin::SetupError;
 
-/// Checks the parameter `support` of a formulation, in spacings \[-\]; `usual` is what its message
+/// Checks the parameter `support` of a formulation, in spacings \[-\]; `usual` is the value that its message
 /// recommends, `spacing` that of the body \[m\].
 ///
 /// # Errors

@@ -82,8 +82,8 @@ impl Ghosts {
         self.map(row).place(position[self.source(row)])
     }
 
-    /// Adds the ghosts of a body whose sources are closer than `reach`, m, to what they repeat across;
-    /// returns their rows. Bodies come in the order of their rows.
+    /// Adds the ghosts of a body whose sources are closer than `reach`, m, to the planes across which they
+    /// repeat; returns their rows. Bodies come in the order of their rows.
     pub fn add(
         &mut self,
         rows: Range<usize>,

@@ -36,7 +36,7 @@ impl Repeat {
         }
     }
 
-    /// The coordinates of the sides behind which the body goes on, m.
+    /// The coordinates of the sides beyond which the body continues, m.
     pub fn sides(&self) -> [f64; 2] {
         match *self {
             Self::Mirror { at, .. } => [at; 2],

@@ -29,8 +29,8 @@ impl Mode {
         (Self::Adds, "adds to"),
     ];
 
-    /// Whether what is declared allows what is done: writing and adding are one for a column that is
-    /// borrowed, and whoever writes may read.
+    /// Whether the declaration allows the access: writing and adding are the same for a borrowed column, and
+    /// a declared writer may read.
     fn allows(self, done: Self) -> bool {
         match done {
             Self::Reads => true,
@@ -79,7 +79,7 @@ pub struct Undeclared {
     pub declaration: String,
 }
 
-/// Which system runs, what the systems have declared, and the first access that one has not.
+/// The running system, the declarations of the systems, and the first undeclared access.
 #[derive(Debug)]
 pub(crate) struct Watch {
     declared: Vec<Declared>,

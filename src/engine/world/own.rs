@@ -78,7 +78,7 @@ impl<'a> PhaseView<'a> {
         });
     }
 
-    /// Exchanges all columns of which every rank has its own rows alone: before the rows are divided anew.
+    /// Exchanges all columns of which every rank has only its own rows: before the rows are divided anew.
     pub fn complete_all(&self) {
         self.columns().iter().for_each(|column| self.complete(column));
     }

@@ -118,7 +118,7 @@ impl World {
         PhaseView { phase, archetype, watch: &self.watch }
     }
 
-    /// From now on the accesses of systems are held against what they have declared, in the order of the
+    /// From now on the accesses of systems are checked against their declarations, in the order of the
     /// schedule.
     pub(crate) fn declare(&mut self, systems: Vec<Declared>) {
         self.watch = Arc::new(Watch::new(systems));

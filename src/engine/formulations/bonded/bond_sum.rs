@@ -13,8 +13,7 @@ pub(in crate::formulations) struct BondSum<const D: usize> {
     pub traction: Lanes4,
 }
 
-/// Bonds between what is summed and what is asked for: some hundred cycles, which is what a row takes to
-/// arrive.
+/// Prefetch distance in bonds: some hundred cycles, about the latency of a row.
 const AHEAD: usize = 32;
 
 impl<const D: usize> BondSum<D> {

@@ -148,7 +148,7 @@ impl Cracks {
         rows.sort_unstable();
     }
 
-    /// Gives all ranks what the pass has found at the edges of a body that each computes.
+    /// Exchanges the results of the pass at the edges of a body among ranks, each of which computes its own.
     pub fn share_edges(&mut self, body: &Range<usize>) {
         let EdgeRows { edges, .. } = EdgeRows::of(&mut self.edges, body.start, body.len());
         if edges.is_empty() {

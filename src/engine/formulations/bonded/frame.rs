@@ -44,8 +44,8 @@ impl AffineFrame {
         site.displacement.xyz() - self.displacement - self.gradient * site.reference.xyz()
     }
 
-    /// [`AffineFrame::rest`] in a hot loop, with the same bits: what a particle shows its neighbours must
-    /// cancel with what it takes of itself.
+    /// [`AffineFrame::rest`] in a hot loop, with the same bits: the record of a particle for its neighbours
+    /// must cancel with its own terms.
     #[inline(always)]
     pub fn rest_in<A: FourLanes>(&self, a: A, site: &PackedParticle) -> Lanes4 {
         let [x, y, z] = self.columns();

@@ -81,7 +81,7 @@ struct InternalForceRows<'a> {
     pass: &'a InternalForce<'a>,
     first: usize,
     force: &'a mut [Force],
-    /// Whether to add to what is there.
+    /// Whether to add to the present values.
     adds: bool,
 }
 

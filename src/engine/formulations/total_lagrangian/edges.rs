@@ -62,8 +62,8 @@ impl DeformationPass<'_> {
         constitutive.fold(&mut rows.part(next..end), sum);
     }
 
-    /// Adds all folded terms to the row of an edge. Where a neighbour has failed in the last step they are
-    /// added as they were before it, first, and what they lose with it is released.
+    /// Adds all folded terms to the row of an edge. Where a neighbour has failed in the last step, the terms
+    /// before the failure are added first, and the energy that they lose is released.
     fn add_at_edge(
         &self,
         constitutive: &Constitutive<'_>,
@@ -119,7 +119,7 @@ impl DeformationPass<'_> {
         EdgeFit { gradient, residual: self.bonds_of(i, &counts).map(error).sum(), is_one: true }
     }
 
-    /// The power, W, of what a term has added, on the particle and on the neighbours that count.
+    /// The power, W, of the contribution of a term, on the particle and on the neighbours that count.
     fn power(&self, i: usize, added: &Added, counts: impl Fn(Mark) -> bool) -> f64 {
         let of_bond = |EdgeBond { to, weight, arm, change }: EdgeBond| {
             let signs = self.ghosts.mirror(to).unwrap_or(DVec3::ONE);

@@ -8,7 +8,7 @@ use crate::schedule::{Step, StepError};
 use crate::world::{Force, Mass, PhaseId};
 
 impl<'a> InternalForce<'a> {
-    /// The pass over what the first one has left.
+    /// The pass over the results of the first one.
     pub fn of(packed: &'a PackedRows, mass: &'a [Mass], gravity: DVec3, plane: bool) -> Self {
         let PackedRows { bonds, ghosts, cracks, sites, stresses, self_force, frames, .. } = packed;
         let mass = bytemuck::cast_slice(mass);

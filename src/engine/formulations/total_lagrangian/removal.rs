@@ -16,7 +16,7 @@ use crate::world::{
 };
 
 impl Deformation {
-    /// Takes up the losses that a checkpoint says had been taken up.
+    /// Restores the losses that the sums had left out at a checkpoint.
     pub(super) fn take_up_restored(
         &mut self,
         world: &World,

@@ -18,7 +18,7 @@ pub(super) struct Deformation {
     pub(super) removed: RemovedRows,
     /// Rows that had failed when the step began, and have not been removed; ascending.
     pub(super) failed: Vec<u32>,
-    /// Whether these rows and the bonds are not yet those of the checkpoint that the run goes on from.
+    /// Whether these rows and the bonds still have to be restored from the checkpoint of the run.
     pub(super) is_restored: bool,
 }
 
@@ -28,7 +28,7 @@ impl Deformation {
         Self { phase, plane, solids, removed, failed: Vec::new(), is_restored: false }
     }
 
-    /// Takes up what has failed in the last step.
+    /// Leaves out the particles that have failed in the last step.
     fn take_up_failed(&mut self, world: &World, packed: &mut PackedRows) -> Result<(), MissingColumn> {
         let view = world.phase(self.phase);
         // Without terms on bonds, nothing of them crosses a crack.

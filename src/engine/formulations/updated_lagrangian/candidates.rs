@@ -23,7 +23,7 @@ const CELL: f64 = 2.0;
 /// Tolerance of the half axes of ellipsoids, over their length.
 const ROUNDING: f64 = 1e-6;
 
-/// The particles of a body and what they see by.
+/// The particles of a body and their supports.
 #[derive(Clone, Copy)]
 pub(super) struct Searched<'a> {
     /// Places of the phase, m.
@@ -64,7 +64,7 @@ impl Candidates {
         Ok(&self.list)
     }
 
-    /// Lets go of a list that holds for one time.
+    /// Drops a list that is valid only once.
     pub fn rest(&mut self) {
         if self.radii.is_empty() {
             self.list = NeighborList::default();

@@ -59,12 +59,12 @@ impl Control {
         Self { is_stabilized, ..Self::default() }
     }
 
-    /// Whether any body has sums of its own.
+    /// Whether any body has sums for its stabilizers.
     pub fn has_sums(&self) -> bool {
         self.is_apart.contains(&true)
     }
 
-    /// Hands stresses on to the ghosts, with the force along its bonds of every row.
+    /// Copies stresses to the ghosts, with the force along its bonds of every row.
     pub fn fill_ghost_stresses(&mut self, ghosts: &Ghosts, bond_force: impl Fn(usize) -> DVec3 + Sync) {
         if self.has_sums() {
             fill_ghosts(ghosts, &self.frames, &self.sites, &mut self.stresses, bond_force);
@@ -89,7 +89,7 @@ pub(super) struct ControlRows<'a> {
 }
 
 impl ControlPass<'_> {
-    /// Adds the folded terms of a block, and hands the fit on to the differences of Laplacians.
+    /// Adds the folded terms of a block, and passes the fit on to the differences of Laplacians.
     pub fn block(
         &self,
         constitutive: &Constitutive<'_>,

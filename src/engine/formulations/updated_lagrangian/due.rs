@@ -11,7 +11,7 @@ use crate::linalg::{Sym3, extreme_stretches};
 use crate::parallel::{FourLanes, HotLoop, Lanes4, Largest, Vector, run_hot, sum_over_blocks};
 use crate::world::DeformationGradient;
 
-/// Steps between two looks at the lengths of pairs: they change slowly against the stable step.
+/// Steps between two tests of the lengths of pairs: they change slowly against the stable step.
 const INTERVAL: u64 = 4;
 /// Distance up to which particles of a regular lattice are beside each other, over the spacing: along its
 /// axes and its diagonals.

@@ -16,8 +16,8 @@ use crate::solids::{Constitutive, CorrectedStress, SolidBlock, SolidRows, SolidS
 pub(super) struct GradientRows<'a> {
     pub stresses: &'a mut [CorrectedStress],
     pub self_force: &'a mut [DVec3],
-    /// B and k of the stabilizers, and what they make of a particle's own; empty where they fold into the
-    /// stress.
+    /// B and k of the stabilizers, and their contributions from the particle itself; empty where they fold
+    /// into the stress.
     pub control: &'a mut [CorrectedStress],
     pub control_force: &'a mut [DVec3],
     pub hessian: HessianBlock<'a>,
@@ -102,7 +102,7 @@ impl UpdatedGradientPass<'_> {
         sum
     }
 
-    /// Goes on from the gradient since the last update to that since the start; returns F_r of the block.
+    /// Multiplies the gradient since the last update with that up to it, F_r; returns F_r of the block.
     fn follow(
         &self,
         volume: &[f64; BLOCK],

@@ -119,7 +119,7 @@ impl Formulation for UpdatedLagrangian {
     }
 }
 
-/// The system that makes deformation gradient and stress, and the reference anew where an update is due.
+/// The system that computes deformation gradient and stress, and the new reference where an update is due.
 fn gradient(phase: PhaseId, system: UpdatedSolids) -> System {
     System::new(Stage::Constitutive, GRADIENT, system)
         .on_phases([phase])

@@ -121,8 +121,8 @@ impl UpdatedRows {
         }
     }
 
-    /// Takes the deformation gradients of the reference from their column, and makes the bonds of the
-    /// stabilizers, for which what has `failed` does not hold.
+    /// Reads the deformation gradients of the reference from their column, and builds the bonds of the
+    /// stabilizers without `failed` particles.
     pub fn take_gradients(
         &mut self,
         world: &World,

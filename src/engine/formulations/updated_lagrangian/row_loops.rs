@@ -11,8 +11,8 @@ use crate::linalg::Sym3;
 use crate::neighbors::NeighborList;
 use crate::parallel::{FourLanes, HotLoop, Lanes4, Number, Vector, run_hot};
 
-/// The rows of a block, which are made in parts, so that what is measured of pairs stays in the first-level
-/// cache. Those of pairs are longer than what is used.
+/// The rows of a block, built in parts, so that the distances of pairs stay in the first-level cache. Those
+/// of pairs are longer than the used part.
 #[derive(Default)]
 pub(super) struct PairBlock {
     /// Where those of each row end.
@@ -78,7 +78,7 @@ pub(super) struct RowPairs<'a> {
     pub source: PairOrigin<'a>,
 }
 
-/// The lanes that hold one of that many neighbours.
+/// The lanes with one of that many neighbours.
 const MASKS: [usize; 5] = [0, 1, 3, 7, 15];
 
 impl PairBlock {

@@ -6,7 +6,7 @@ use crate::formulations::bonded::Ellipsoid;
 use crate::parallel::{FourLanes, Lanes4, Number, Vector, for_each_block};
 use crate::symmetry::{Ghost, Ghosts};
 
-/// All particles, and their ghosts. Loops that look at places alone read nothing else.
+/// All particles, and their ghosts. Loops over positions only read nothing else.
 #[derive(Default)]
 pub(super) struct SeenParticles {
     /// Place, m, and volume, m3. That of a ghost is without its shift, which is added to differences of

@@ -97,8 +97,8 @@ struct DisplacementSum {
 }
 
 impl ReferenceRelaxation {
-    /// Moves the reference places of the rows of a body, which are those of its particles, to where the
-    /// reference is to be. What has failed stays, and moves nothing.
+    /// Moves the reference positions of the rows of a body from those of its particles to the relaxed ones.
+    /// Failed particles stay, and move no others.
     pub fn smooth(
         &mut self,
         by: &ReferenceSmoothing<'_>,

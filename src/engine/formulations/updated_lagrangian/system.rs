@@ -361,8 +361,7 @@ impl UpdatedSolids {
 }
 
 impl UpdatedSolids {
-    /// Takes up what has been removed or has failed since the last update, and notes which bodies have lost
-    /// something.
+    /// Leaves out the particles removed or failed since the last update, and notes the bodies with losses.
     fn take_up_lost(&mut self, world: &World, has_lost: &mut [bool]) -> Result<(), MissingColumn> {
         let view = world.phase(self.phase);
         let removed = view.read::<Removed>()?;
@@ -393,7 +392,7 @@ impl UpdatedSolids {
         Ok(())
     }
 
-    /// Takes the losses that had been taken up from the column that says so, after a restart.
+    /// Restores the losses that the sums had left out from their column, after a restart.
     fn read_taken_up(&mut self, world: &World) -> Result<(), MissingColumn> {
         let taken_up = world.phase(self.phase).read::<TakenUp>()?;
         self.removed = TakenUp::rows(&taken_up, Loss::Removed);

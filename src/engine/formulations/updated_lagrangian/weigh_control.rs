@@ -9,8 +9,8 @@ use crate::solids::CorrectedStress;
 use crate::world::World;
 
 impl UpdatedRows {
-    /// Decides which bodies need sums of their own, and makes their bonds. What has `failed` does not hold;
-    /// the rows are ascending.
+    /// Decides which bodies need sums for their stabilizers, and builds their bonds without `failed`
+    /// particles; the rows are ascending.
     pub fn weigh_control(&mut self, world: &World, original: &[DVec3], failed: &[u32]) {
         let Self { bonds, ghosts, gradient, kernels, control, volume, lists, follows, .. } = self;
         control.is_apart.clear();

@@ -99,7 +99,7 @@ impl Output {
         self.folder.prepare(&names)
     }
 
-    /// Opens all files, new ones or those of the run that goes on; does nothing if they are open.
+    /// Opens all files, new ones or those of the resumed run; does nothing if they are open.
     ///
     /// # Errors
     /// A file cannot be written or continued.
@@ -169,7 +169,7 @@ impl Output {
         self.recorders.iter_mut().try_for_each(|recorder| recorder.start(&run))
     }
 
-    /// Writes what is due after a step.
+    /// Writes the output that is due after a step.
     ///
     /// # Errors
     /// Something cannot be written.

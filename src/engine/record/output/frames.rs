@@ -15,11 +15,11 @@ use crate::schedule::Trigger;
 use crate::schedule::{Step, StepError};
 use crate::world::{BodyId, Position};
 
-/// When frames are due, and what is in them.
+/// Times and content of frames.
 pub(super) struct Frames {
     trigger: Trigger,
     last: Option<f64>,
-    /// Fields of recordings: what the scene asks for, then what recorders need. No tensors.
+    /// Fields of recordings: those requested by the scene, then those that recorders need. No tensors.
     recorded: Vec<ChosenField>,
     /// Fields of ParaView files.
     written: Vec<ChosenField>,

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Integrates what a gauge reads by the trapezoidal rule, step by step: of the force on a body this is the
-/// momentum that the leapfrog gives it.
+/// Integrates the reading of a gauge by the trapezoidal rule, step by step: of the force on a body this is
+/// the momentum that the leapfrog transfers.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct TimeMean {
     /// Integral since the last sample, and its length, s.
@@ -14,7 +14,7 @@ pub(super) struct TimeMean {
 }
 
 impl TimeMean {
-    /// Takes in what is read at a time, s.
+    /// Adds the reading at a time, s.
     pub fn add(&mut self, time: f64, values: &[f64]) {
         if let Some((before, earlier)) = &self.last {
             let dt = time - before;

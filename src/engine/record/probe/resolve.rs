@@ -31,7 +31,7 @@ pub struct ResolvedProbe {
 }
 
 impl ResolvedProbe {
-    /// Finds what the probe of the scene means.
+    /// Resolves a probe of the scene.
     ///
     /// # Errors
     /// An empty selection, a field that is not there, energies of a part of a body.

@@ -7,7 +7,7 @@ use crate::scene::Outside;
 use crate::schedule::{Step, StepError};
 use crate::world::{BodyId, Position};
 
-/// The look at the domain of a scene that wants no particle outside.
+/// The check of the domain of a scene in which no particle may leave it.
 pub(super) struct DomainCheck {
     domain: DomainBox,
     sums: Vec<FirstOutside>,
@@ -32,7 +32,7 @@ impl DomainCheck {
         Some(Self { domain, sums: Vec::new() })
     }
 
-    /// Looks at all particles.
+    /// Checks all particles.
     pub fn look(&mut self, step: &Step<'_>) -> Result<(), StepError> {
         let domain = self.domain;
         for (k, body) in step.world.bodies().iter().enumerate() {

@@ -28,7 +28,7 @@ pub(super) struct EnergyGrowth {
 }
 
 impl EnergyGrowth {
-    /// Looks at a step; stored energy below `resolution`, J, is round-off.
+    /// Checks a step; stored energy below `resolution`, J, is round-off.
     pub fn look(&mut self, step: &Step<'_>, resolution: f64, remedies: &Remedies) -> Result<(), StepError> {
         let (ledger, clock) = (&*step.ledger, step.clock);
         let stored = ledger.stored();
@@ -66,7 +66,7 @@ pub(super) fn resolution(sim: &SimBuilder<'_>) -> f64 {
     sim.bodies().iter().map(of).sum()
 }
 
-/// The account and body that hold most; of equal ones the first.
+/// The account and body with the most energy; of equal ones the first.
 fn largest(ledger: &Ledger, world: &World) -> (String, String) {
     let mut most = f64::NEG_INFINITY;
     let mut found = (String::new(), String::new());

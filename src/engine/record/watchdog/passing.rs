@@ -13,7 +13,7 @@ use crate::world::{BodyId, Position, Removed};
 /// touch are one spacing apart.
 const OVERLAP: f64 = 0.6;
 
-/// Looks for particles of bodies inside of each other.
+/// Checks whether particles of bodies are inside of each other.
 pub(super) struct PassingBodies {
     pairs: Vec<[BodyId; 2]>,
     spacings: Vec<f64>,
@@ -34,7 +34,7 @@ impl PassingBodies {
         Self { told: vec![false; pairs.len()], pairs, spacings }
     }
 
-    /// Looks at all pairs.
+    /// Checks all pairs.
     ///
     /// # Errors
     /// A column is missing.

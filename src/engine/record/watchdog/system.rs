@@ -10,10 +10,10 @@ use crate::plugin::SimBuilder;
 use crate::schedule::Trigger;
 use crate::schedule::{Run, Stage, Step, StepError, System};
 
-/// Label of the system that looks for unsound states at the end of every step.
+/// Label of the system that checks for invalid states at the end of every step.
 pub const WATCHDOG: &str = "watchdog";
 
-/// Steps between two looks at the domain: a particle that has left it stays outside.
+/// Steps between two checks of the domain: a particle that has left it stays outside.
 const DOMAIN_INTERVAL: u64 = 10;
 
 /// Share of the run in which hourglass energy is not judged.
@@ -27,8 +27,8 @@ struct Watchdog {
     passing: PassingBodies,
     remedies: Remedies,
     domain: Option<DomainCheck>,
-    /// Looks that end in a warning come with the frames, but not with the first one: a body at rest has no
-    /// energies.
+    /// Checks that end in a warning are made with the frames, but not with the first one: a body at rest has
+    /// no energies.
     frames: Trigger,
     end: f64,
 }

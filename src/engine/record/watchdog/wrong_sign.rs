@@ -17,12 +17,12 @@ const SHARE: f64 = 0.01;
 /// arrives, to take as much a little later.
 const SHARE_OF_WALLS: f64 = 0.05;
 /// The same over the work that gravity and loads on fluids could do on all bodies along their own heights:
-/// what is at rest has hardly any energy else.
+/// bodies at rest have hardly any other energy.
 const SHARE_OF_WEIGHT: f64 = 0.005;
-/// Looks in a row at which that has to be so: what moves has little energy at the start of a run. The end of
-/// a run counts for all.
+/// Consecutive checks in which the criterion has to be met: there is little energy at the start of a run. The
+/// end of a run counts as all of them.
 const LOOKS: u32 = 5;
-/// Growth of that share for which the warning is written anew.
+/// Growth of that share for which the warning is renewed.
 const GROWTH: f64 = 1.2;
 
 /// Account of the pressure of walls.
@@ -43,7 +43,7 @@ pub(super) struct WrongSign {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Given {
     name: String,
-    /// Looks in a row at which it has given too much.
+    /// Consecutive checks in which it has supplied too much.
     looks: u32,
     /// Largest share reported to the user.
     told: f64,

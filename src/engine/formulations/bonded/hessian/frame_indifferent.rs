@@ -132,8 +132,8 @@ impl FrameIndifferent<'_> {
     }
 }
 
-/// Marks the rows, ghosts too, that have failed or have no gradient of their own: their motion says nothing.
-/// What has been removed is in no sum.
+/// Marks the rows, ghosts too, that have failed or have no gradient of their own: their motion has no
+/// meaning. Removed particles are in no sum.
 fn fill_loose(
     bonds: &Bonds,
     ghosts: &Ghosts,

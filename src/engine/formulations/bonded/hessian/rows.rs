@@ -100,7 +100,7 @@ impl HessianRows {
         }
     }
 
-    /// Gives all ranks what the first pass has written and neighbours read.
+    /// Exchanges the rows of the first pass that neighbours read among ranks.
     pub fn share(&mut self) {
         for HessianBody { rows, term, .. } in &self.bodies {
             match term.form {
@@ -110,7 +110,7 @@ impl HessianRows {
         }
     }
 
-    /// Hands gradients on to the ghosts.
+    /// Copies gradients to the ghosts.
     pub fn fill_ghost_gradients(&mut self, ghosts: &Ghosts) {
         ghosts.fill(&mut self.gradient, |ghost, h| ghost.map.tensor(*h));
     }

@@ -89,7 +89,7 @@ impl VidalRows {
         }
     }
 
-    /// Hands what belongs to the reference on to the ghosts.
+    /// Copies the rows of the reference to the ghosts.
     pub fn renew_ghosts(&mut self, ghosts: &Ghosts) {
         ghosts.fill(&mut self.step, |ghost, step| ghost.map.vector(*step));
         ghosts.fill(&mut self.shift, |ghost, shift| ghost.map.vector(*shift));

@@ -38,8 +38,7 @@ impl HessianRows {
         self.fill_ghost_gradients(ghosts);
     }
 
-    /// Adds to the corrected stresses what the form puts into their particles, after the stress of all
-    /// bodies.
+    /// Adds the stresses of the form to the corrected stresses, after the stress of all bodies.
     pub fn add_vidal_stress(
         &mut self,
         bonded: BondedSites<'_>,
