@@ -148,7 +148,7 @@ fn some_of(face: &[u32]) -> impl Iterator<Item = usize> {
     face.iter().step_by(every).map(|&number| number as usize)
 }
 
-/// The part of a span of time in which a gap closes, and what is left of the gap at its start.
+/// The part of a time interval in which a gap closes, and the remaining gap at its start.
 fn first_beyond(closing: &dyn Fn(f64) -> f64, span: (f64, f64), gap: f64) -> Option<(f64, f64, f64)> {
     let step = (span.1 - span.0) / f64::from(TIMES);
     let mut left = gap;

@@ -149,8 +149,8 @@ fn at_scene(scene: &Scene, error: SetupError) -> Vec<Problem> {
     }
 }
 
-/// Builds the plugins of bodies and of the scene, then the conditions; collects what is wrong with any of
-/// them. Returns the items that have added recorders, one for each.
+/// Builds the plugins of bodies and of the scene, then the conditions; collects the problems of all. Returns
+/// the items that have added recorders, one for each.
 fn build_plugins(
     scene: &Scene,
     registry: &Registry,

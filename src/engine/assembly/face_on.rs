@@ -19,8 +19,7 @@ const REMEDY: &str = "artificial_viscosity";
 /// Part of a mean layer that the foremost one has to have to be a face: that of a disc of eight particles
 /// across has a half.
 const FULL: f64 = 0.75;
-/// Transits of waves through the bodies for which a front counts where a condition goes on moving one of
-/// them.
+/// Transits of waves through the bodies for which a front counts where a condition keeps moving one of them.
 const LONGEST_FRONT: f64 = 20.0;
 /// Least spacings that two faces have in common along each of their axes.
 const LEAST_COMMON: f64 = 4.0;

@@ -2,7 +2,7 @@
 
 use std::fs::read_to_string;
 
-/// Memory of a machine that does not say what it has, B.
+/// Assumed memory of a machine that does not report it, B.
 const UNKNOWN: u64 = 16 << 30;
 
 /// The memory that this process can still take, B.

@@ -12,7 +12,7 @@ pub struct BuildOptions {
 }
 
 impl BuildOptions {
-    /// A run that writes into a new folder, or one that holds nothing of what it writes.
+    /// A run that writes into a new folder, or one without files of these names.
     pub fn into_folder(folder: impl Into<PathBuf>) -> Self {
         let output = OutputOptions { folder: folder.into(), existing: Existing::Refuse, resume: false };
         Self { output: Some(output) }

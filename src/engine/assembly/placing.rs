@@ -28,7 +28,7 @@ pub(super) struct Placed<'r> {
     lens: Vec<usize>,
 }
 
-/// Places all bodies; collects what is wrong with any of them.
+/// Places all bodies; collects the problems of all.
 pub(super) fn place_bodies<'r>(
     scene: &Scene,
     source: &Source,
@@ -143,8 +143,8 @@ fn fill(
     Ok((sites, bounds))
 }
 
-/// The one particle, just behind the surface, that stands for a rigid body without end: a half-space that is
-/// a tool.
+/// The one particle, just behind the surface, that represents an unbounded rigid body: a half-space that is a
+/// tool.
 fn endless_tool(
     body: &BodyDescription,
     formulation: &str,

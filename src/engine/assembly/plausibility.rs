@@ -24,7 +24,7 @@ const LIGHTEST_LIQUID: f64 = 50.0;
 /// Distance from the origin in spacings beyond which a double no longer tells neighbours apart well.
 const FARTHEST: f64 = 1.0e10;
 
-/// Warns of what looks like a slip of units.
+/// Warns of probably wrong units.
 pub(super) fn warn(sim: &mut SimBuilder<'_>) {
     let gravity = sim.gravity().length();
     let of_gravity = (gravity > LARGEST_GRAVITY).then(|| {

@@ -19,7 +19,7 @@ const ON_SIDE: f64 = 1e-3;
 /// Share of the way to the side: the particle stays inside of the body.
 const INSIDE: f64 = 1.0 - 1e-4;
 
-/// Puts the particles of all conditions that hold a face on it.
+/// Moves the particles of all conditions that hold a face onto it.
 pub(super) fn place(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>) {
     if sim.bodies.iter().any(|body| body.kind == BodyKind::Fluid) {
         return;
@@ -65,7 +65,7 @@ pub(super) fn place(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>
     }
 }
 
-/// Puts the particles of a body onto its sides, each with the axes along which a condition holds it.
+/// Moves the particles of a body onto its sides, each with the axes along which a condition holds it.
 fn place_body(body: &mut BodyPlan, sides: &[(HeldSide, [bool; 3])], axes: usize) {
     // Several conditions may hold one side, each along some axes: it is one plane all the same.
     let mut ways = vec![DVec3::ZERO; body.sites.len()];
@@ -90,7 +90,7 @@ fn side_of(face: Face, bounds: &Aabb) -> f64 {
     if sign < 0.0 { bounds.min[axis] } else { bounds.max[axis] }
 }
 
-/// Whether the body goes on behind a side.
+/// Whether the body continues beyond a side.
 fn is_mirrored(scene: &Scene, face: Face, at: f64, spacing: f64) -> bool {
     let axis = face.outward().0;
     let mut planes = scene

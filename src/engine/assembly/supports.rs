@@ -25,8 +25,8 @@ const BESIDE: f64 = 1.5;
 const AS_NEAR: f64 = 1.05;
 /// How far a particle is moved at most, over the spacing: the next one must not come too near.
 const FARTHEST: f64 = 0.75;
-/// Share of the way to the edge: the particle stays inside of what the scene selects, clearly so for shapes
-/// that count what is nearly inside.
+/// Share of the distance to the edge: the particle stays inside of the selection, clearly so for shapes with
+/// a tolerance.
 const INSIDE: f64 = 1.0 - 1e-4;
 /// Support radius over spacing of bodies that do not say it.
 const USUAL_SUPPORT: f64 = 2.41;

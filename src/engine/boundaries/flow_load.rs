@@ -12,7 +12,7 @@ use crate::plugin::{BodyKind, SimBuilder};
 use crate::schedule::{Mode, Run, Stage, Step, StepError, System};
 use crate::world::{Mass, ParticleId, PhaseId};
 
-/// Adds the system that tells what a load does to fluids, where anything bounds them.
+/// Adds the system that passes a load on to fluids with boundaries.
 pub(super) fn add(label: &str, law: &Arc<dyn LoadLaw>, parts: &[Part], sim: &mut SimBuilder<'_>) {
     let is_fluid = |part: &Part| sim.body(part.body).kind == BodyKind::Fluid;
     let parts: Vec<(usize, Part)> =

@@ -283,7 +283,7 @@ impl SkinLoad {
         Ok(())
     }
 
-    /// Looks whether particles that carry the facets have failed in this step, and warns.
+    /// Checks whether particles that carry the facets have failed in this step, and warns.
     fn look(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         if self.breaking == Breaking::Never {
             return Ok(());

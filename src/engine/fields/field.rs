@@ -88,7 +88,7 @@ impl Field {
         Self::with_input(column.name, column.unit, column.components, needs, evaluate).about(column.about)
     }
 
-    /// The same field with a line for lists that says what it is.
+    /// The same field with a line of description for lists.
     #[must_use]
     pub fn about(mut self, text: &'static str) -> Self {
         self.about = text;

@@ -26,8 +26,8 @@ pub struct FieldTable {
 type Shape<'a> = (&'a str, &'static str, &'static [&'static str]);
 
 impl FieldTable {
-    /// Takes what plugins have added, then what is derived, then the columns: the first that fits a body is
-    /// meant.
+    /// Collects the fields of plugins, then derived ones, then the columns: the first that fits a body is
+    /// used.
     pub fn collect(sim: &mut SimBuilder<'_>) -> Self {
         let mut fields: Vec<Field> = sim.take_extensions();
         fields.extend(motion::fields());

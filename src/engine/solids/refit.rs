@@ -69,7 +69,7 @@ pub(super) fn from_law(
     }
 }
 
-/// After the law: the stress column for the forces.
+/// For the column: the stress of the forces, over det C.
 pub(super) fn to_column(refits: &[(u32, DMat3)], first: usize, stress: &mut [DMat3]) {
     for (row, c) in refits {
         stress[*row as usize - first] *= 1.0 / c.determinant();

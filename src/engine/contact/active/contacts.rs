@@ -10,8 +10,8 @@ use crate::world::sum_by_row;
 /// In the place of a number for candidates that do not touch.
 const NONE: u32 = u32::MAX;
 
-/// The candidates of a step that touch, each with what is known of it, `T`, and what it does, `P`; `E` is
-/// what else the candidates tell.
+/// The active contacts among the candidates of a step, each with its geometry, `T`, and its force, `P`; `E`
+/// are additional results for the candidates.
 pub(in crate::contact) struct ActiveContacts<T, P, E> {
     /// As long as the list of candidates; in each block those that touch come first.
     slots: Vec<(PairKey, T)>,
@@ -59,7 +59,7 @@ impl<T, P, E> Default for ActiveContacts<T, P, E> {
 impl<T: Copy + Default + Send + Sync, P: Copy + Default + Send + Sync, E: BlockSum + Sync>
     ActiveContacts<T, P, E>
 {
-    /// Makes room for that many candidates. What is not used is not touched: it takes addresses, and no
+    /// Reserves slots for that many candidates. Unused ones are not touched: they take addresses, and no
     /// memory.
     pub fn reserve(&mut self, count: usize) {
         fn room<V>(list: &mut Vec<V>, count: usize) {
@@ -135,8 +135,8 @@ impl<T: Copy + Default + Send + Sync, P: Copy + Default + Send + Sync, E: BlockS
         self.histories.set(self.met.iter().map(|(key, met)| (*key, begun(*key, met))).collect());
     }
 
-    /// Computes what every contact does, with what it remembers, and what those do that have ended. Returns
-    /// what all of them hold and lose, added by the `nodes` of the first body.
+    /// Computes the force of every contact, with its history, and the end of those that have ended. Returns
+    /// the energies and losses of all, added by the `nodes` of the first body.
     pub fn respond(
         &mut self,
         nodes: usize,

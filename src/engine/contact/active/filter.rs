@@ -34,8 +34,8 @@ impl<T: Copy + Default + Send + Sync, E: BlockSum + Sync> Filter<T, E> {
         Self { slots: Vec::with_capacity(count), found: Vec::with_capacity(block_count(count)) }
     }
 
-    /// Puts into `kept` what `test` makes of the numbers below `count`, in their order; returns what it adds
-    /// up.
+    /// Stores the results of `test` for the numbers below `count` in `kept`, in their order; returns the sum
+    /// of its additional results.
     pub fn select(
         &mut self,
         count: usize,
@@ -60,7 +60,7 @@ impl<T: Copy + Default + Send + Sync, E: BlockSum + Sync> Filter<T, E> {
     }
 }
 
-/// Moves what has been found in the blocks of `slots`, `count` in all, to `kept`.
+/// Moves the results in the blocks of `slots`, `count` in all, to `kept`.
 pub(in crate::contact) fn keep<T: Copy + Default + Send + Sync, E: Sync>(
     slots: &[T],
     found: &[Found<E>],

@@ -54,7 +54,7 @@ pub(in crate::contact) struct ContactNodes {
     /// Sums of stiffness over mass of the contacts of each, 1/s2: a bound on the square of a frequency
     /// (Gershgorin).
     stiffness: Vec<f64>,
-    /// Heat that each takes up in the step, J.
+    /// Heat received by each in the step, J.
     heat: Vec<f64>,
 }
 
@@ -131,7 +131,7 @@ impl ContactNodes {
         &self.ends[self.starts[number] as usize..self.starts[number + 1] as usize]
     }
 
-    /// Looks at the local_motions of those that touch, and at how they move, if that is asked for.
+    /// Computes the local motions of the nodes in contact, and their velocities if requested.
     pub fn look(&mut self, members: &Members<'_>, contacts: &Numbers, moving: bool) {
         let mut local_motions = std::mem::take(&mut self.local_motions);
         let all = &*self;

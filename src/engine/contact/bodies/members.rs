@@ -26,7 +26,7 @@ pub(in crate::contact) struct MemberParticles {
     /// volume.
     pub radius: Vec<f64>,
     /// Whether their shapes follow their deformation. In a body that may fail they stay spheres: the
-    /// deformation gradient of what has failed is that of a crack.
+    /// deformation gradient of a failed particle is that of a crack.
     pub deform: bool,
     /// Number of particles on the largest side of the box around the body: what may touch at once, of most
     /// bodies.
@@ -171,7 +171,8 @@ impl Members<'_> {
         (self.radius[i], self.gradient.map(|f| f[self.first_row + i].0))
     }
 
-    /// Where the point `arm` beside a particle in the reference configuration is now, from the particle, m.
+    /// The point `arm` beside a particle in the reference configuration, at present, relative to the
+    /// particle, m.
     pub fn carry(&self, i: usize, arm: DVec3) -> DVec3 {
         self.gradient.map_or(DMat3::IDENTITY, |f| f[self.first_row + i].0) * arm
     }

@@ -18,7 +18,7 @@ pub(in crate::contact) enum NodeTurn {
     Second,
 }
 
-/// The nodes of a body as they are now.
+/// The nodes of a body in their current state.
 pub(in crate::contact) enum NodeView<'a> {
     /// Particles.
     Particles(Members<'a>),
@@ -83,7 +83,7 @@ impl NodeView<'_> {
         }
     }
 
-    /// Length that a node stands for, m.
+    /// Length that a node represents, m.
     pub fn size(&self, i: usize) -> f64 {
         match self {
             Self::Particles(members) => 2.0 * members.radius(i),
@@ -132,9 +132,9 @@ impl NodeView<'_> {
         Some(rim.lowest(turn * normal).map(|arm| turn.inverse() * arm))
     }
 
-    /// Whether contact at a point of a tool is left to the nodes of that: its round outline touches with
-    /// circles of its own. Those of a ball lie in every plane, and go before the rims of a cylinder; of two
-    /// alike the first contact keeps it.
+    /// Whether contact at a point of a tool is left to the nodes of the tool, because its round outline has
+    /// circles as nodes. The circles of a ball lie in every plane, and take precedence over the rims of a
+    /// cylinder; of two equal ones the first contact keeps it.
     pub fn leaves_to(&self, i: usize, tool: &RigidBody, point: DVec3, turn: NodeTurn) -> bool {
         let Self::Rigid(body) = self else { return false };
         if turn == NodeTurn::Alone || !tool.nodes.is_round(point) {

@@ -89,9 +89,9 @@ impl ContactSides {
         }
     }
 
-    /// The nearest point of the surface to the image of a place that is nearest to its body, in the reference
-    /// configuration of the body. Where the body fills a period its ends are no surface: it goes on behind
-    /// them.
+    /// The nearest point of the surface to that image of a place which is nearest to its body, in the
+    /// reference configuration of the body. Where the body spans a period its ends are no surface: it
+    /// continues beyond them.
     pub fn closest(&self, x: DVec3, tool: &RigidBody) -> SurfacePoint {
         let at = tool.reference(self.near(x, tool));
         let mut found = tool.surface.closest(at);

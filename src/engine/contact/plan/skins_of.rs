@@ -18,7 +18,7 @@ pub(in crate::contact) struct BodySkins {
 type Reason = &'static str;
 
 impl BodySkins {
-    /// The skin of a body that is not rigid; of those that have none, what the user is to be told of it.
+    /// The skin of a deformable body; for bodies without one, the reason for the warning.
     pub fn of(
         &mut self,
         body: &BodyPlan,

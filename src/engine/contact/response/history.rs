@@ -50,7 +50,7 @@ impl History {
 }
 
 /// The histories of all contacts of two bodies, ascending by pair. A new generation is written while the old
-/// one is read: what is not written again has ended.
+/// one is read: contacts that are not written again have ended.
 #[derive(Clone, Debug, Default)]
 pub(in crate::contact) struct Histories {
     now: Vec<(PairKey, History)>,
@@ -81,7 +81,7 @@ impl Histories {
         &self.now
     }
 
-    /// Takes up the contacts of a checkpoint.
+    /// Restores the contacts of a checkpoint.
     pub fn set(&mut self, entries: Vec<(PairKey, History)>) {
         self.now = entries;
     }

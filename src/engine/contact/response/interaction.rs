@@ -28,7 +28,7 @@ pub(in crate::contact) struct Interaction {
     pub heat: [f64; 2],
 }
 
-/// A contact as it is now.
+/// Current state of a contact.
 #[derive(Clone, Copy)]
 pub(in crate::contact) struct ContactState {
     pub touch: Touch,

@@ -6,9 +6,9 @@ use crate::contact::laws::{NormalForce, Touch};
 use crate::schedule::{Step, StepError};
 use crate::world::{BodyId, Mass};
 
-/// A third of the critical step of the contacts alone: bonds, which have used up 0.6 of theirs, and contacts
-/// together stay stable, and what the first and the last step of a touch miss of its energy, which goes with
-/// the square of this, stays small.
+/// A third of the critical step of the contacts alone: bonds, which use 0.6 of theirs, and contacts together
+/// are stable, and the energy error of the first and the last step of a contact, which grows with the square
+/// of this, is small.
 const FREQUENCY_FACTOR: f64 = 0.7;
 /// Share of the distance of two particles that just touch by which they may approach in a step.
 const SWEPT_FACTOR: f64 = 0.25;
@@ -30,7 +30,8 @@ const STEADY: [f64; 2] = [0.01, 0.04];
 /// a touch. A step that is longer than the contact allows would put a point that touches for the first time
 /// too deep, and make energy.
 const AHEAD: f64 = 3.0;
-/// Overlap over the spacing whose stiffness stands for that of a touch to come: laws may begin with none.
+/// Overlap over the spacing whose stiffness is taken for an imminent contact: the stiffness of laws may begin
+/// at zero.
 const EXPECTED: f64 = 0.05;
 
 /// Input of the stable step of contact of two skins.
@@ -71,7 +72,7 @@ impl OfSkins<'_> {
         }
     }
 
-    /// The factor for what is pressed.
+    /// The factor for compressed contacts.
     fn factor(&self) -> f64 {
         if !self.keeps_reference {
             return OF_LANDING;

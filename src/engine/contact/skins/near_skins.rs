@@ -209,8 +209,8 @@ impl NearSkins {
         Ok(())
     }
 
-    /// Asks for memory before the bodies meet: each facet may have as many of the other skin near it as it
-    /// has of its own.
+    /// Reserves memory before contact: each facet may have as many of the other skin near it as it has of its
+    /// own.
     fn make_room(&mut self, skins: [&Skin; 2], points: usize, reach: f64) -> Result<(), NeighborError> {
         for side in 0..2 {
             let facets = skins[side].facets.corners.len();
@@ -226,7 +226,7 @@ impl NearSkins {
         Ok(())
     }
 
-    /// Looks where the vertices of the region of a side are.
+    /// Computes the positions of the vertices of the region of a side.
     fn look(&mut self, side: usize, view: &SkinView<'_>) {
         let rows = Picked::new(&self.regions[side].vertices, &mut self.places[side]);
         for_each_block(rows, &mut Vec::new(), &|_, mut rows: Picked<'_, DVec3>| {

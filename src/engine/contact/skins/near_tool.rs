@@ -73,7 +73,7 @@ impl NearTool {
         self.left -= MARGIN * skin.spacing;
     }
 
-    /// Looks where the vertices of the region are.
+    /// Computes the positions of the vertices of the region.
     fn look(&mut self, view: &SkinView<'_>, (sides, tool): (&ContactSides, &RigidBody)) {
         let rows = Picked::new(&self.region.vertices, &mut self.places);
         type Rows<'a> = Picked<'a, (DVec3, f64)>;

@@ -108,7 +108,7 @@ impl SkinOnTool {
         Ok(energies)
     }
 
-    /// Computes the forces of all points that touch, and what is on the rigid body about its centre.
+    /// Computes the forces of all points in contact, and their sum on the rigid body about its centre.
     pub fn evaluate(
         &mut self,
         step: &mut Step<'_>,
@@ -156,7 +156,7 @@ impl SkinOnTool {
         extremes
     }
 
-    /// Computes what the vertices see of the tool.
+    /// Computes the position of the tool relative to the vertices.
     fn look(&mut self, tool: &RigidBody, dt: f64) {
         let Self { interaction, patch, sides, seen, .. } = self;
         let (on, vertices) = (Pressing::new(interaction, patch, (sides, tool), dt), patch.vertices());
@@ -169,7 +169,7 @@ impl SkinOnTool {
         });
     }
 
-    /// Computes what the points of every facet near the tool press on its vertices.
+    /// Computes the contact forces of the points of every facet near the tool on its vertices.
     fn press_facets(&mut self, tool: &RigidBody, dt: f64) -> Extremes {
         let Self { interaction, patch, sides, points, near, seen, reached, on_facets, .. } = self;
         let (patch, points, seen) = (&*patch, &*points, &*seen);
@@ -200,7 +200,7 @@ impl SkinOnTool {
         })
     }
 
-    /// Adds up what the facets press on every vertex, and the area of even facets that is its own.
+    /// Sums the forces of the facets on every vertex, and its share of the area of even facets.
     fn gather(&mut self) {
         let Self { patch, near, reached, on_facets, pressed, even, .. } = self;
         let (axes, vertices) = (patch.skin.facets.axes, patch.vertices().len());
@@ -219,7 +219,7 @@ impl SkinOnTool {
         }
     }
 
-    /// Adds what the areas of even facets press on their vertices.
+    /// Adds the forces of the areas of even facets to their vertices.
     fn press_vertices(&mut self, tool: &RigidBody, dt: f64) -> Extremes {
         let Self { interaction, patch, sides, seen, pressed, even, .. } = self;
         let on = Pressing::new(interaction, patch, (sides, tool), dt);
@@ -285,7 +285,7 @@ impl SkinOnTool {
         contacts.respond(patch.skin.vertices(), respond, end)
     }
 
-    /// Pushes the vertices; returns what is on the tool about its centre.
+    /// Adds the forces to the vertices; returns their sum on the tool about its centre.
     fn push(&mut self, tool: &RigidBody) -> ToolSums {
         let Self { interaction, patch, sides, pressed, contacts, .. } = self;
         for ((_, number), beside) in contacts.met().iter().zip(contacts.pushes()) {

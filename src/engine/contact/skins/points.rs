@@ -93,7 +93,7 @@ pub(in crate::contact) struct Pressed {
 }
 
 impl Pressed {
-    /// Adds a share of a spring along `normal` that stands for an area, m2 (m).
+    /// Adds a share of a spring along `normal` that represents an area, m2 (m).
     #[inline]
     pub fn add(&mut self, share: f64, spring: &Spring, normal: DVec3, area: f64, overlap: f64) {
         let part = spring.over(share);
@@ -250,7 +250,7 @@ impl<'a> Pressing<'a> {
         Self { interaction, patch, sides, tool, touch, usual, dt }
     }
 
-    /// The spring of a point that sees that and stands for an area, m2 (m).
+    /// The spring of a point with that geometry that represents an area, m2 (m).
     #[inline]
     pub fn spring(&self, seen: &ToolView, area: f64, extremes: &mut Extremes) -> Spring {
         let touch = Touch { overlap: -seen.distance, ..self.touch };

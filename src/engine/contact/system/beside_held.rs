@@ -34,8 +34,8 @@ impl ReachedSide {
         body.sides.iter().map(of_side)
     }
 
-    /// Looks whether a particle on the side carries a notable force of a patch across the normal of the side,
-    /// and warns once.
+    /// Checks whether a particle on the side carries a notable force of a patch tangential to the side, and
+    /// warns once.
     pub fn look(&mut self, patch: &Patch, step: &mut Step<'_>) {
         if self.is_told || patch.skin.body != self.body {
             return;

@@ -67,7 +67,7 @@ impl Fragile {
         Self { carriers: skins.iter().map(|skin| Carriers::of(skin)).collect(), state: SkinState::Whole }
     }
 
-    /// Looks whether a particle of a whole skin has failed in this step, and warns.
+    /// Checks whether a particle of an intact skin has failed in this step, and warns.
     pub fn look(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         if self.state != SkinState::Whole {
             self.state = SkinState::Broken;
@@ -123,8 +123,8 @@ impl Acts {
     }
 }
 
-/// Has the particles that touch in the place of the skins of that number begin with what these hold; returns
-/// the two bodies, and the energies that these give up.
+/// Starts the contacts of particles that replace the skins of that number with the energy of these; returns
+/// the two bodies, and the released energies.
 pub(super) fn break_skins(
     number: usize,
     touching: &mut [Touching],

@@ -42,7 +42,7 @@ impl Touching {
         if let Self::Surface(contact) = self { contact.sides.turn } else { NodeTurn::Alone }
     }
 
-    /// What its springs do to two rigid bodies, as the other contact of the pair sees it.
+    /// Response of two rigid bodies to its springs, as the other contact of the pair needs it.
     pub fn beside_the_other(&self) -> Option<Together> {
         if let Self::Surface(contact) = self { Some(contact.together?.turned_around()) } else { None }
     }

@@ -58,7 +58,7 @@ impl SurfaceContact {
         Self { interaction, gravity, nearby, sides, contacts, contact_nodes, near, together: None }
     }
 
-    /// Finds the nodes that touch, and adds what their springs do to the rigid bodies.
+    /// Finds the nodes in contact, and adds the forces of their springs to the rigid bodies.
     pub fn find(&mut self, step: &Step<'_>, motion: [MotionBounds; 2]) -> Result<(), StepError> {
         let mut bodies = step.resources.get_mut::<RigidBodies>();
         let (speed, dt) = (MotionBounds::approach(motion, &Map::IDENTITY), step.clock.dt);

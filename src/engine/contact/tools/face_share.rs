@@ -18,9 +18,9 @@ use glam::DVec3;
 use crate::rigid::RigidBody;
 use crate::shapes::SurfacePoint;
 
-/// Distance from the end of a face within which points count less, over the length that a point stands for.
-/// Where faces and lattices are aligned the outermost points are half of that length inside: they count in
-/// full, and nothing pushes them along the face.
+/// Distance from the edge of a face within which the weight of points decreases, over the length that a point
+/// represents. Where faces and lattices are aligned the outermost points are half of that length inside: they
+/// have full weight, and no force along the face.
 const RAMP: f64 = 0.4;
 
 /// The share w of a point, and its gradient, 1/m.
@@ -31,10 +31,10 @@ pub(super) struct FaceShare {
 }
 
 impl FaceShare {
-    /// Of what is no point of a face.
+    /// For nodes that are no points of a face.
     pub const WHOLE: Self = Self { share: 1.0, gradient: DVec3::ZERO };
 
-    /// Of a point that stands for a length, m, and is nearest to that point of the surface of `tool`, in the
+    /// For a point that represents a length, m, and is nearest to that point of the surface of `tool`, in the
     /// reference configuration.
     pub fn new(nearest: &SurfacePoint, length: f64, tool: &RigidBody) -> Self {
         let depth = RAMP * length;

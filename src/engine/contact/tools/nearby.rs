@@ -38,8 +38,8 @@ impl Nearby {
         &self.candidates
     }
 
-    /// Takes in how far the two bodies may have moved together, m, and how far the nodes are stretched at
-    /// most; finds the candidates anew if they may be others, and says whether it has.
+    /// Updates the bounds of the joint motion of the two bodies, m, and of the stretch of the nodes; searches
+    /// the candidates again if they may have changed, and says whether it has.
     pub fn update(
         &mut self,
         sides: &ContactSides,

@@ -70,7 +70,7 @@ pub(super) struct OnSurface<'a> {
 }
 
 impl OnSurface<'_> {
-    /// Where a node touches, if it does. Takes in what it says of the time step.
+    /// Contact of a node, if it has one. Adds its data for the time step.
     #[inline(always)]
     pub fn touching(&self, node: u32, near_nodes: &mut NearNodes) -> Option<NodeTouch> {
         let Self { nodes, tool, .. } = self;

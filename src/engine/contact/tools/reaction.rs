@@ -46,8 +46,8 @@ impl BlockSum for Pushes {
     }
 }
 
-/// Pushes the rigid bodies, exactly opposite to what is on the other side, at one place; `count` is the
-/// number of nodes. Returns the sums of stiffness over mass of both sides, 1/s2.
+/// Adds the forces to the rigid bodies, exactly opposite to those on the other side, at one place; `count` is
+/// the number of nodes. Returns the sums of stiffness over mass of both sides, 1/s2.
 pub(super) fn push<T: Sync>(
     sides: &ContactSides,
     met: &[(PairKey, T)],

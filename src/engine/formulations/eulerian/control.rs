@@ -38,8 +38,8 @@ column! {
     pub struct HourglassEnergy(f64) = "hourglass_energy", "U_h", "J";
 }
 
-/// Runs the pass over body `k`: adds the stress of the control to what is there, writes its forces, and gives
-/// its energy. `energy` are the rows of [`HourglassEnergy`] of the body, as the last step left them, J.
+/// Runs the pass over body `k`: adds the stress of the control, writes its forces, and returns its energy.
+/// `energy` are the rows of [`HourglassEnergy`] of the body after the last step, J.
 pub(super) fn run(
     packed: &mut EulerianRows,
     k: usize,

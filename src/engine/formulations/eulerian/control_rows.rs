@@ -18,14 +18,14 @@ pub(super) struct Carried {
 }
 
 impl Carried {
-    /// Takes up F, the modulus, Pa, and the reference volume, m3.
+    /// Sets F, the modulus, Pa, and the reference volume, m3.
     pub fn set(&mut self, f: &DMat3, modulus: f64, volume: f64) {
         let before = self.columns[1].0[3];
         self.columns =
             [Lanes4::new(f.x_axis, modulus), Lanes4::new(f.y_axis, before), Lanes4::new(f.z_axis, volume)];
     }
 
-    /// Takes up the modulus of the last step, Pa.
+    /// Sets the modulus of the last step, Pa.
     pub fn set_modulus_before(&mut self, modulus: f64) {
         self.columns[1].0[3] = modulus;
     }

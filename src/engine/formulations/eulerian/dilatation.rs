@@ -29,8 +29,8 @@ pub(super) struct Dilatation {
 }
 
 impl Dilatation {
-    /// Books what the change of volume of the last step has taken out of the stored energies of the bodies,
-    /// by the mean of the stresses before and after it. Without a step it takes up the stresses alone.
+    /// Books the change of the stored energies of the bodies by the change of volume of the last step, with
+    /// the mean of the stresses before and after it. Without a step it stores the stresses only.
     pub fn book(
         &mut self,
         phase: PhaseId,

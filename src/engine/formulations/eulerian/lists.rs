@@ -50,7 +50,7 @@ impl EulerianLists {
         Self { bodies, ..Self::default() }
     }
 
-    /// Builds the lists anew if a pair may have come within the support that is not in them; says whether it
+    /// Rebuilds the lists if a pair that is not in them may have come within the support; says whether it
     /// did.
     ///
     /// # Errors

@@ -86,7 +86,7 @@ impl Split for NeighborRows<'_> {
     }
 }
 
-/// Looks at the lists of a block.
+/// Computes the pairs of the lists of a block.
 pub(super) struct LookAtBlock<'a, 'r> {
     pub kernel: Kernel,
     /// Support radius, m.

@@ -247,7 +247,7 @@ fn set_up(
     Ok(())
 }
 
-/// Looks at the neighbours of the reference configuration: a body without any has no stiffness.
+/// Checks the neighbours of the reference configuration: a body without any has no stiffness.
 fn look_at_reference(packed: &mut EulerianRows, setup: &mut Setup<'_>) -> Result<(), SetupError> {
     let EulerianRows { lists, kernels, points, near, plane, .. } = packed;
     for (body, of) in lists.bodies.iter().zip(kernels) {

@@ -28,17 +28,16 @@ pub(super) struct EulerianRows {
     /// Of every body, as in the lists.
     pub kernels: Vec<EulerianKernel>,
     pub points: Vec<EulerianParticle>,
-    /// X, for all that compares with the start, and what the control along pairs needs.
+    /// X, for comparisons with the initial configuration, and data for the control along pairs.
     pub carried: Vec<Carried>,
     pub near: EulerianNeighbors,
     /// F of the real rows.
     pub deformation: Vec<DMat3>,
-    /// Corrected stress tau M^-1, and in the last lane of its traction what it is weighted with: the volume
-    /// V_0.
+    /// Corrected stress tau M^-1, and in the last lane of its traction its weight, the volume V_0.
     pub stresses: Vec<CorrectedStress>,
     /// Results of the control along pairs.
     pub control: EulerianControlRows,
-    /// Stable step of each body as it is now, s.
+    /// Current stable step of each body, s.
     pub stable_step: Vec<f64>,
     /// Plane strain.
     pub plane: bool,
@@ -104,12 +103,12 @@ impl EulerianRows {
         self.lists.ghosts.fill(&mut self.points, |ghost, point: &EulerianParticle| point.image(ghost.map));
     }
 
-    /// Hands what is carried from the start on to the ghosts.
+    /// Copies the initial data to the ghosts.
     pub fn fill_ghost_carried(&mut self) {
         self.lists.ghosts.fill(&mut self.carried, |ghost: Ghost<'_>, own: &Carried| own.image(ghost.map));
     }
 
-    /// Hands the corrected stresses on to the ghosts.
+    /// Copies the corrected stresses to the ghosts.
     pub fn fill_ghost_stresses(&mut self) {
         self.lists.ghosts.fill(&mut self.stresses, |ghost, own: &CorrectedStress| {
             let mut stress = own.image(ghost.map);

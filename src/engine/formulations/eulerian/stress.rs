@@ -33,7 +33,7 @@ pub(super) struct Stress {
     shares: Vec<f64>,
     /// Removed rows that the sums know of, ascending.
     removed: Vec<u32>,
-    /// Whether these are not yet those of the checkpoint that the run goes on from.
+    /// Whether these still have to be restored from the checkpoint of the run.
     is_restored: bool,
 }
 
@@ -319,7 +319,7 @@ impl StressPass<'_> {
     }
 }
 
-/// A corrected stress, and what it counts in the sums of the force.
+/// A corrected stress, and its weight in the sums of the force.
 fn weighted(stress: &DMat3, measure: f64) -> CorrectedStress {
     CorrectedStress { traction: Lanes4::new(DVec3::ZERO, measure), ..CorrectedStress::new(stress) }
 }

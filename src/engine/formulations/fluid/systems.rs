@@ -118,8 +118,8 @@ pub fn add(
     Ok(())
 }
 
-/// Adds what the pressure of boundaries with suction and the stretching of deformable bodies do to the
-/// compression of the fluid, where there are any.
+/// Adds the contributions of the pressure of boundaries with suction and of the stretching of deformable
+/// bodies to the compression of the fluid, where there are any.
 fn add_boundary_rates(sim: &mut SimBuilder<'_>, groups: &[Group], fluid: PhaseId, boundaries: &[PhaseId]) {
     let has_suction = groups.iter().any(Group::has_suction);
     let mut before = COMPRESSION;

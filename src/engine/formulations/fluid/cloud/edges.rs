@@ -42,7 +42,7 @@ pub struct EdgeParticle {
     pub row: usize,
     /// Share of it that is behind the faces of other boundaries, 0 to 1.
     pub behind: f64,
-    /// Inverse of the moments of the normals around it, with what it counts for itself, times this share.
+    /// Inverse of the moments of the normals around it, with its own weight, times this share.
     pub inverse: DMat3,
     /// Weight of the particle itself.
     pub own: f64,

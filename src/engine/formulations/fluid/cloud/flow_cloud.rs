@@ -39,7 +39,7 @@ pub struct Near {
     pub volume: f64,
 }
 
-/// The cloud: what the systems of a flow share. It is derived from the columns.
+/// The cloud: the shared data of the systems of a flow. It is derived from the columns.
 pub struct FlowCloud {
     /// One group for every body: fluids first, each in the order of the scene.
     pub groups: Vec<Group>,

@@ -87,7 +87,7 @@ impl FlowCloud {
     }
 }
 
-/// Takes the neighbours before row `end` of the cloud, where a group ends, out of what is left of a row that
+/// Splits off the neighbours before row `end` of the cloud, where a group ends, from the rest of a row that
 /// is ordered by groups.
 #[inline(always)]
 pub fn take_until<'a>(rest: &mut &'a [u32], end: usize) -> &'a [u32] {

@@ -22,7 +22,7 @@ pub const NEIGHBORS: &str = "fluid_neighbors";
 /// Keeps the lists and the packed rows of the cloud, and sorts the fluids at times.
 #[derive(Default)]
 pub struct Neighbors {
-    /// Whether the lists are not yet those of the checkpoint that the run goes on from.
+    /// Whether the lists still have to be restored from the checkpoint of the run.
     is_restored: bool,
     /// Positions that lists are built from, m.
     built: Vec<DVec3>,

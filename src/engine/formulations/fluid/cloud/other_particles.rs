@@ -5,7 +5,7 @@ use crate::ranks::Halo;
 /// Which rows of other ranks this one knows.
 #[derive(Debug, Default)]
 pub struct OtherParticles {
-    /// Whether loops need no more than what is near their own particles.
+    /// Whether loops need only the particles near their own ones.
     pub(super) is_local: bool,
     /// Whether the records of all rows are those of now.
     pub(super) is_whole: bool,

@@ -17,8 +17,8 @@ use crate::schedule::Resources;
 use crate::world::{MissingColumn, Velocity, World};
 
 impl FlowCloud {
-    /// Whether its loops need no more than what is near their own particles: where it is bounded by nothing
-    /// but walls along which it slides.
+    /// Whether its loops need only the particles near their own ones: where all its boundaries are walls
+    /// along which it slides.
     pub(in crate::formulations::fluid) fn decide_what_others_know(&mut self) {
         let bounds = || self.groups.iter().filter(|group| group.fluid().is_none());
         let is_plain = bounds().all(|group| group.is_wall() && !group.sticks() && !group.has_suction());
@@ -31,7 +31,7 @@ impl FlowCloud {
             && !self.viscosities.spin;
     }
 
-    /// Whether ranks know no more of others than what is near their own particles.
+    /// Whether ranks have only those particles of others that are near their own ones.
     pub(in crate::formulations::fluid) fn is_local(&self) -> bool {
         self.others.is_local && has_several()
     }
@@ -203,7 +203,7 @@ impl FlowCloud {
         );
     }
 
-    /// Packs fluid particles of other ranks anew for sums in single precision.
+    /// Packs fluid particles of other ranks again for sums in single precision.
     fn repack_others(&mut self, pack: impl Fn(&mut Packed, &FlowParticle, &Blocks)) {
         let Some(mut blocks) = self.blocks.take() else { return };
         let mut packed = std::mem::take(&mut blocks.packed);

@@ -73,7 +73,7 @@ impl FlowCloud {
     }
 }
 
-/// The records of a group, and what they are packed from.
+/// The records of a group, and their sources.
 struct GroupRows<'a> {
     group: &'a Group,
     records: &'a mut [FlowParticle],
@@ -98,7 +98,7 @@ impl GroupRows<'_> {
     }
 
     /// Packs the rows of this rank; those of the others too where the boundary has moved, or where all ranks
-    /// look at all of them.
+    /// need all of them.
     fn pack_boundary(
         mut self,
         view: &PhaseView<'_>,
@@ -145,7 +145,7 @@ impl GroupRows<'_> {
 
 type Common<'a> = (&'a mut [FlowParticle], &'a [Position], &'a [Velocity], &'a [Removed]);
 type Fluids<'a> = (&'a [Mass], &'a [Density], &'a [Pressure]);
-/// Records, what their volumes and pressures are made of, and what blocks know of the same particles.
+/// Records, the sources of their volumes and pressures, and the records of blocks for the same particles.
 type WithPacked<'a, T> = (Common<'a>, T, Option<&'a mut [Packed]>);
 type WithVolume<'a> = WithPacked<'a, &'a [ReferenceVolume]>;
 

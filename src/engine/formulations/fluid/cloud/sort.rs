@@ -11,8 +11,8 @@ use super::group::Group;
 use crate::shapes::MortonSort;
 use crate::world::World;
 
-/// Lists that are built before the particles are sorted anew: the fastest has then moved some six spacings
-/// along a wall.
+/// Builds of lists between two sorts of the particles: the fastest has then moved some six spacings along a
+/// wall.
 pub const BUILDS: u64 = 8;
 
 /// Memory for sorting.

@@ -32,7 +32,7 @@ pub struct ParticleRows<'a> {
 pub struct Particles<'a> {
     /// Length of the long step, s; zero before the first.
     pub dt: f64,
-    /// The particles as they are now.
+    /// The particles in their current state.
     pub records: &'a [FlowParticle],
     /// Positions at the start of the long step, m.
     pub before: &'a [DVec3],

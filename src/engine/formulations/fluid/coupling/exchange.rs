@@ -21,7 +21,7 @@ crate::column! {
 pub struct Exchange {
     /// Gain of kinetic energy.
     pub kinetic: f64,
-    /// Work that constraints take up.
+    /// Work of constraints.
     pub constraints: f64,
     /// Work of the parts of the force over the long step.
     pub parts: [f64; PARTS],

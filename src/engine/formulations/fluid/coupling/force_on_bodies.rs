@@ -23,7 +23,7 @@ use crate::rigid::{RIGID_BODIES, RigidBodies};
 use crate::schedule::{AccountKind, Adds, Mode, Run, Stage, Step, StepError, System};
 use crate::world::{BodyId, BodySet, Force, Mass, Mobility, PhaseId, Position, Removed, Velocity};
 
-/// Adds the systems for one phase of bodies beside the flow: what they add comes after the weight of the
+/// Adds the systems for one phase of bodies beside the flow: their contributions come after the weight of the
 /// bodies and after the second kick. Where friction `follows`, it changes in the sub-steps by the motion of
 /// the body.
 pub fn add_force_on_bodies(
@@ -169,7 +169,7 @@ impl Coupling {
 }
 
 impl Coupling {
-    /// Gives a body what it lacks at the end of the long step.
+    /// Applies the correction impulse to a body at the end of the long step.
     fn give(&mut self, step: &mut Step<'_>, cloud: &FlowCloud, group: &Group) -> Result<Exchange, StepError> {
         let resources = step.resources;
         let mut rigid = resources.try_get_mut::<RigidBodies>();

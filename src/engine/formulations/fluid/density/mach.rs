@@ -16,7 +16,7 @@ use crate::schedule::{Step, StepError, warn_anew};
 /// Speed of the flow over that of sound that is worth a warning: twice the one that a speed of sound is
 /// chosen for. The density then changes by 4 %.
 const FAST: f64 = 0.2;
-/// Growth of the largest Mach number for which the warning is written anew.
+/// Growth of the largest Mach number for which the warning is renewed.
 const GROWTH: f64 = 1.05;
 
 /// Largest speed in a frame, over that in the first one, for which the frame is taken.
@@ -113,8 +113,7 @@ pub struct Mach {
 }
 
 impl Mach {
-    /// Looks at the largest [`relative_speed`] in a step, m/s; the warning keeps up with the largest one of
-    /// the run.
+    /// Checks the largest [`relative_speed`] in a step, m/s; the warning has the largest one of the run.
     ///
     /// # Errors
     /// The flow is faster than its sound.

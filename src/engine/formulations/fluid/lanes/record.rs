@@ -128,7 +128,7 @@ pub fn filled_up(rest: &[u32]) -> [u32; 4] {
     [rest[0], rest[last.min(1)], rest[last.min(2)], rest[last]]
 }
 
-/// Beyond the support in the lanes that hold no neighbour, by the number of those that do.
+/// Beyond the support in the lanes without a neighbour, by the number of those with one.
 pub const FILLS: [Lanes4; 5] = [
     Lanes4([4.0, 4.0, 4.0, 4.0]),
     Lanes4([0.0, 4.0, 4.0, 4.0]),
@@ -137,7 +137,7 @@ pub const FILLS: [Lanes4; 5] = [
     Lanes4([0.0, 0.0, 0.0, 0.0]),
 ];
 
-/// One in the lanes that hold a neighbour, zero in those that fill up.
+/// One in the lanes with a neighbour, zero in the others.
 pub const MASKS: [Lanes4; 5] = [
     Lanes4([0.0, 0.0, 0.0, 0.0]),
     Lanes4([1.0, 0.0, 0.0, 0.0]),

@@ -57,7 +57,7 @@ pub struct GapSearch<'a> {
     pub positions: &'a [DVec3],
     /// The first so many positions are those of fluids.
     pub fluid: usize,
-    /// The lists hold what is within these two, m.
+    /// The lists hold the pairs within these two distances, m.
     pub support: f64,
     pub skin: f64,
     pub periodic: &'a Periodic,
@@ -87,8 +87,8 @@ impl GapPairs {
             .for_each(|side| side.moves = SideMotion::Prescribed);
     }
 
-    /// Share of the particle in row `i` in the force of the gap between it and that in row `j`: the freer of
-    /// the two bodies looks at it, or both.
+    /// Share of the particle in row `i` in the force of the gap between it and that in row `j`: that of the
+    /// freer of the two bodies counts, or both.
     pub fn share_of(&self, i: usize, j: usize) -> f64 {
         match self.side_of(i).moves.cmp(&self.side_of(j).moves) {
             Ordering::Less => 0.0,

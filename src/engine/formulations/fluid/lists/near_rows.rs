@@ -68,8 +68,8 @@ impl NearRows {
         &self.indices[start..start + self.counts[i] as usize]
     }
 
-    /// Fills rows that other ranks look at with all that their lists hold, and the bits of each: who asks for
-    /// neighbours within the support leaves out those beyond.
+    /// Fills rows that other ranks read with all pairs of their lists, and the bits of each: reads of
+    /// neighbours within the support leave out those beyond.
     pub fn fill_others<'l>(
         &mut self,
         others: impl Iterator<Item = Range<usize>>,

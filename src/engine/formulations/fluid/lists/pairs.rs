@@ -20,8 +20,8 @@ const CELL: f64 = 2.0;
 /// Room over the support that round-off cannot take away.
 const CERTAIN: f64 = 1e-6;
 
-/// Lists that hold every pair within the support as long as particles have not moved more than the skins
-/// against those around them.
+/// Lists that contain every pair within the support as long as the relative displacement of neighbouring
+/// particles is less than the skins.
 #[derive(Debug)]
 pub struct FlowPairs {
     skins: Skins,
@@ -73,7 +73,7 @@ impl FlowPairs {
         }
     }
 
-    /// Keeps lists of what is beside gaps as well.
+    /// Keeps lists of the particles beside gaps as well.
     pub fn with_gaps(mut self, gaps: GapPairs) -> Self {
         if gaps.are_possible() {
             self.skins.gaps = self.skins.walls;

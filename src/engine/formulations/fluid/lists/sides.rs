@@ -116,8 +116,8 @@ pub struct Sides<'a> {
 }
 
 impl Sides<'_> {
-    /// Whether fluid particle `i` sees particle `j` of the cloud; `walls` holds what is near fluid particles
-    /// and no fluid, seen or not.
+    /// Whether fluid particle `i` sees particle `j` of the cloud; `walls` holds the boundary particles near
+    /// fluid particles, seen or not.
     pub fn sees(&self, i: usize, j: usize, walls: &NeighborList) -> bool {
         if j < self.fluid {
             return i == j

@@ -74,7 +74,7 @@ impl Thickness {
         (is_most || self.has_fins(edges)).then_some(found)
     }
 
-    /// Whether a thin part ends farther from what is thick than that many supports: one is that of a fin or
+    /// Whether a thin part ends farther from the thick part than that many supports: one is that of a fin or
     /// an edge below some 40 degrees, two that of a fin or an edge below 20.
     fn has_fins(&self, supports: usize) -> bool {
         let mut is_known: Vec<bool> = self.thin_parts().iter().map(|is_thin| !is_thin).collect();

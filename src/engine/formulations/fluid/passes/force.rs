@@ -14,7 +14,7 @@ use crate::world::{Force, Mass, PhaseId, Removed};
 /// Label of the system that computes the forces of fluids and walls.
 pub const FLUID_FORCE: &str = "fluid_force";
 
-/// Declares what the force of a flow reads of the particles beside each.
+/// Declares the reads of the force of a flow, beside those of the particles.
 pub fn reads_flow(system: System) -> System {
     system
         .touches_packed(FLOW_RECORDS, Mode::ReadsNear)

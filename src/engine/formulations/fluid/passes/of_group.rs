@@ -13,8 +13,8 @@ use crate::schedule::{Step, StepError};
 use crate::world::Force;
 
 impl FlowCloud {
-    /// The blocks that the particles of a body are in: those of boundaries have none where thin bodies hide
-    /// some of what is near.
+    /// The blocks of the particles of a body: boundaries have none where thin bodies hide near particles from
+    /// some.
     fn blocks_of(&self, group: &Group) -> Option<&Blocks> {
         self.blocks.as_deref().filter(|blocks| group.fluid().is_some() || !blocks.hides)
     }
@@ -31,8 +31,8 @@ impl FlowCloud {
         share_wide_rows(parts, PARTS);
     }
 
-    /// The same for the particles that this rank computes; the force `adds` to what is there, or takes its
-    /// place.
+    /// The same for the particles that this rank computes; the force `adds` to the present values, or
+    /// replaces them.
     pub(in crate::formulations::fluid) fn own_force(
         &self,
         group: &Group,
@@ -45,7 +45,7 @@ impl FlowCloud {
         }
     }
 
-    /// [`FlowCloud::own_force`] on a fluid, in the place of what is there, with the pair terms of the body.
+    /// [`FlowCloud::own_force`] on a fluid, replacing the present values, with the pair terms of the body.
     pub(in crate::formulations::fluid) fn force_with(
         &self,
         group: &Group,

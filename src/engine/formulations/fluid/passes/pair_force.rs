@@ -23,7 +23,7 @@ use crate::world::Force;
 pub struct PairForce<'a> {
     pub cloud: &'a FlowCloud,
     pub group: &'a Group,
-    /// Whether the force is added to what is there already.
+    /// Whether the force is added to the present values.
     pub adds: bool,
 }
 

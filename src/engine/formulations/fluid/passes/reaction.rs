@@ -8,7 +8,7 @@ use crate::world::{BodyId, Force};
 
 impl FlowCloud {
     /// Force of the fluids on every particle of a body, and the viscous part of it, N; none for a body
-    /// without fluid beside it. It is computed of the particles of the last right-hand side.
+    /// without fluid beside it. It is computed from the particles of the last right-hand side.
     pub fn forces_on(&self, body: BodyId) -> Option<Vec<(DVec3, DVec3)>> {
         let mut sum: Option<Vec<(DVec3, DVec3)>> = None;
         // A thin body has a group for each of its sides.

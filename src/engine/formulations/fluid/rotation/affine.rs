@@ -6,8 +6,8 @@ use super::spin::rotation;
 use crate::linalg::Sym3;
 
 /// Share of the trace of the moment matrix that is added to its diagonal: points that nearly lie in a plane
-/// or on a line show nothing across it but how they turn. What that leaves of other motions is taken up in a
-/// second step, so that its square is left.
+/// or on a line determine across it only their rotation. A second step corrects the error for other motions,
+/// of which the square of this share remains.
 const FLAT: f64 = 0.01;
 
 /// The matrix B with `B M = T`, for the moment matrix `M = sum m x (x) x` of some points and `T = sum m v (x)

@@ -110,7 +110,7 @@ impl RestLines {
         Some(p)
     }
 
-    /// Length of the way from a point out of a region, m. Where parts of a region meet, it goes on.
+    /// Length of the line from a point out of a region, m. Where parts of a region meet, it continues.
     fn way_out(&self, region: &dyn Region, from: DVec3, up: DVec3) -> f64 {
         let (least, step) = (PRECISION * self.spacing, BEYOND * self.spacing);
         let (mut length, most) = (0.0, region.bounds().extent().length());

@@ -6,8 +6,8 @@ use crate::parallel::sum_over_blocks;
 use crate::schedule::{AccountKind, Step, StepError};
 use crate::world::{BodyId, Mass, Position, Removed};
 
-/// Moves the particles of a body; velocities and densities stay. What the weight gains or loses in height is
-/// supplied by gravity, as in any motion, and taken out by the account of that name.
+/// Moves the particles of a body; velocities and densities stay. The change of potential energy is supplied
+/// by gravity, as in any motion, and booked as dissipated in the account of that name.
 ///
 /// # Errors
 /// A column is missing.

@@ -18,7 +18,7 @@ pub struct Interior {
 
 impl Interior {
     /// Finds them by the smallest eigenvalue of each row of the fluids. Few particles are at a surface, so
-    /// that it costs less to go out from them than to look at the neighbours of all.
+    /// that it is cheaper to mark the neighbours of these than to test the neighbours of all.
     pub fn find(&mut self, cloud: &FlowCloud, lambda: impl Fn(usize) -> f64) {
         self.inside.clear();
         self.inside.extend((0..cloud.fluid).map(|i| lambda(i) >= INSIDE));

@@ -62,7 +62,7 @@ pub struct PlaceInBody {
 
 impl BoundaryShape {
     /// That of a body whose shape is known, with a stiffness of the repulsion of each fluid, N/m; its nearest
-    /// particle is within `reach`, m, of what is beside it.
+    /// particle is within `reach`, m, of any particle beside it.
     pub fn of(group: &Group, stiffness: Vec<f64>, reach: f64, sim: &SimBuilder<'_>) -> Option<Self> {
         let body = sim.body(group.body);
         let shape = sim.scene().bodies[body.id.0].shape.cut_part_by_part();

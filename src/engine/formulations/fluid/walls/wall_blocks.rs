@@ -19,7 +19,7 @@ pub struct WallBlocks<'a> {
 }
 
 impl WallBlocks<'_> {
-    /// Writes what is beside every particle of a boundary, and the neighbours within the support of every
+    /// Writes the sums beside every particle of a boundary, and the neighbours within the support of every
     /// block.
     pub fn run(&self, blocks: &mut Blocks, out: &mut [FluidBeside]) {
         let cloud = self.cloud;

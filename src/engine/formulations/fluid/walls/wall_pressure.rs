@@ -41,7 +41,7 @@ pub struct WallPressure<'a> {
 }
 
 impl WallPressure<'_> {
-    /// Writes what is beside every particle of a boundary, and its neighbours within the support.
+    /// Writes the sums beside every particle of a boundary, and its neighbours within the support.
     pub fn run(&self, out: &mut [FluidBeside], near: &mut NearRows) {
         let cloud = self.cloud;
         // The pass over gaps needs the neighbours of every particle beside one.

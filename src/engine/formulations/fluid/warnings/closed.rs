@@ -25,7 +25,7 @@ pub struct ClosedWatch {
 }
 
 impl ClosedWatch {
-    /// Looks at the energy of compression, and at the end of a run at the walls.
+    /// Evaluates the energy of compression, and at the end of a run the walls.
     pub fn look(
         &mut self,
         is_end: bool,

@@ -19,7 +19,7 @@ use crate::schedule::{Step, warn_anew};
 const DEVIATION: f64 = 0.02;
 /// Frames in sequence for which it has to last.
 const FRAMES: u32 = 3;
-/// Growth of the deviation for which the warning is written anew.
+/// Growth of the deviation for which the warning is renewed.
 const GROWTH: f64 = 1.2;
 /// Standard deviation of a flow as one would have it.
 const USUAL: f64 = 0.003;
@@ -50,7 +50,7 @@ impl BlockSum for CompressionSums {
 }
 
 impl CompressionWatch {
-    /// Looks at all fluids.
+    /// Checks all fluids.
     pub fn look(&mut self, cloud: &FlowCloud, step: &mut Step<'_>) {
         self.bodies.resize(cloud.groups.len(), Told::default());
         for (group, told) in cloud.groups.iter().zip(&mut self.bodies) {

@@ -15,7 +15,8 @@ const SHARE: f64 = 0.06;
 /// Work of walls over that energy above which they drive the flow.
 const WORK: f64 = 0.5;
 
-/// Looks at what the diffusion of density, whose account has that name, has taken by the end of a run.
+/// Evaluates the energy that the diffusion of density, whose account has that name, has taken by the end of a
+/// run.
 pub fn look(is_told: &mut bool, diffusion: Option<&str>, cloud: &FlowCloud, step: &mut Step<'_>) {
     let Some(diffusion) = diffusion.filter(|_| !*is_told) else { return };
     let walls = || cloud.groups.iter().filter(|group| group.is_wall());

@@ -19,7 +19,7 @@ use crate::schedule::{Step, warn_anew};
 const INSIDE: f64 = 0.75;
 /// Difference of the mean filling from one that is worth a warning.
 const SHARE: f64 = 0.1;
-/// Growth of the difference for which the warning is written anew.
+/// Growth of the difference for which the warning is renewed.
 const GROWTH: f64 = 1.2;
 /// Least part of the particles of a body that has to be inside for a mean: a splash has gaps.
 const PART: f64 = 0.25;
@@ -32,7 +32,7 @@ pub struct FillingWatch {
 }
 
 impl FillingWatch {
-    /// Looks at all fluids.
+    /// Checks all fluids.
     pub fn look(&mut self, cloud: &FlowCloud, scratch: &mut Vec<Option<f64>>, step: &mut Step<'_>) {
         self.told.resize(cloud.groups.len(), 0.0);
         for (group, told) in cloud.groups.iter().zip(&mut self.told) {

@@ -17,7 +17,7 @@ const LARGEST_DEVIATION: f64 = 0.04;
 /// Least number of particles for a mean.
 const LEAST: usize = 8;
 /// Distances of particles that face a boundary across a gap from the nearest one of it, over the mean of both
-/// spacings: half a spacing to two of empty space. What is farther away is to fall.
+/// spacings: half a spacing to two of empty space. Particles farther away are meant to fall.
 const ACROSS: std::ops::Range<f64> = 1.5..3.0;
 /// Part of the particles that face a boundary that has to be across a gap: stairs of round bodies have a few.
 const PART: f64 = 0.2;

@@ -28,7 +28,7 @@ pub struct SeenFrames {
     frames: u32,
 }
 
-/// Looks for light bodies that stay below.
+/// Checks for light bodies that stay below.
 pub struct HeldDown {
     /// Acceleration of gravity, m/s2.
     gravity: DVec3,
@@ -43,7 +43,7 @@ impl HeldDown {
         Self { gravity, spacing, seen: Vec::new() }
     }
 
-    /// Looks at all rigid bodies that are free along gravity.
+    /// Checks all rigid bodies that are free along gravity.
     pub fn look(&mut self, cloud: &FlowCloud, step: &mut Step<'_>) -> Result<(), StepError> {
         let Self { gravity, spacing, .. } = *self;
         let Some(bodies) = step.resources.try_get::<RigidBodies>() else { return Ok(()) };

@@ -22,7 +22,7 @@ pub const DEPTH: f64 = 0.5;
 /// spacing of the body; the middle of a cube is 0.87 away.
 const NEAREST: f64 = 0.9;
 
-/// Looks for particles that have entered something.
+/// Checks for particles inside boundaries.
 pub struct Intrusion {
     bodies: Vec<IntrudedShape>,
     /// Depth at which a particle is inside, m.
@@ -61,7 +61,7 @@ impl Intrusion {
         Self { bodies, least: DEPTH * spacing, told: Vec::new() }
     }
 
-    /// Looks at all particles, and warns of what is new.
+    /// Checks all particles, and warns of new ones.
     pub fn look(&mut self, cloud: &FlowCloud, step: &mut Step<'_>) -> Result<(), StepError> {
         for fluid in cloud.groups.iter().filter(|group| group.fluid().is_some()) {
             for other in cloud.groups.iter().filter(|group| group.fluid().is_none()) {
@@ -127,7 +127,7 @@ impl Deepest {
     }
 }
 
-/// The deepest particle of a fluid in a body that bounds it; every rank looks at its own.
+/// The deepest particle of a fluid in a boundary body; every rank checks its own.
 fn deepest(
     cloud: &FlowCloud,
     [fluid, other]: [&Group; 2],

@@ -50,7 +50,7 @@ fn pressure_sum(cloud: &FlowCloud, group: &Group) -> PressureSum {
 }
 
 impl LostVolume {
-    /// Compares the pressure that is left with what the removed volume costs, in flows whose boundaries have
+    /// Compares the remaining pressure with the loss by the removed volume, in flows whose boundaries have
     /// suction.
     pub fn look(&mut self, cloud: &FlowCloud, step: &mut Step<'_>) -> Result<(), StepError> {
         if self.is_told || !cloud.is_confined() {

@@ -12,8 +12,7 @@ use crate::world::Mobility;
 
 /// Distance of two particles that touch, over the mean of their spacings.
 const TOUCH: f64 = 1.25;
-/// Width of what is dry and touches something, over the spacing of the fluid, from which on a body is
-/// reported.
+/// Width of a dry part in contact, over the spacing of the fluid, from which on a body is reported.
 const LEAST: f64 = 3.0;
 
 /// Warns, once, of the first body that lies on something and is wet elsewhere; `spacing` is that of the

@@ -10,7 +10,7 @@ use crate::world::{BodyId, ParticleId, Position, ReferencePosition, Removed};
 /// Depth of the centre of a particle in a wall from which on it is inside, over its spacing.
 const DEPTH: f64 = 0.25;
 
-/// Looks for particles of bodies inside of walls.
+/// Checks for particles of bodies inside of walls.
 pub struct PassingWalls {
     pairs: Vec<BodyAndWall>,
     /// Pairs that the user has been warned of.
@@ -43,7 +43,7 @@ impl PassingWalls {
         Self { told: vec![false; pairs.len()], pairs }
     }
 
-    /// Looks at all pairs; walls that turn are taken as if they had not.
+    /// Checks all pairs; rotation of walls is ignored.
     pub fn look(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         for (pair, told) in self.pairs.iter().zip(&mut self.told).filter(|(_, told)| !**told) {
             let (view, rows) = step.world.body_view(pair.wall);

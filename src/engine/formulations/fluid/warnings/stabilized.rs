@@ -15,7 +15,7 @@ use super::closed::is_closed;
 /// Energy that stabilizers have taken over the largest that any account has held that is worth a warning.
 const SHARE: f64 = 0.2;
 
-/// Looks at what stabilizers have taken from the fluids by the end of a run.
+/// Evaluates the energy that stabilizers have taken from the fluids by the end of a run.
 pub fn look(is_told: &mut bool, cloud: &FlowCloud, scratch: &mut Vec<Option<f64>>, step: &mut Step<'_>) {
     let fluids = || cloud.groups.iter().filter(|group| group.fluid().is_some());
     let of_fluids = |account: &Account| fluids().map(|group| account.of(group.body)).sum::<f64>();

@@ -35,7 +35,7 @@ pub struct Unevenness {
 }
 
 impl Unevenness {
-    /// Looks at all fluids that friction slows down.
+    /// Checks all fluids with friction.
     pub fn look(
         &mut self,
         cloud: &FlowCloud,

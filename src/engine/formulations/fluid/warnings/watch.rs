@@ -22,7 +22,7 @@ use crate::schedule::Trigger;
 use crate::schedule::{Mode, Run, Stage, Step, StepError, System};
 use crate::world::{Mobility, ParticleId, PhaseId, Position, ReferencePosition, ReferenceVolume, Removed};
 
-/// Steps between two looks for particles inside of something: what has entered stays for some time.
+/// Steps between two checks for particles inside boundaries: they stay there for some time.
 const INTERVAL: u64 = 50;
 
 struct FlowWatch {
@@ -34,8 +34,8 @@ struct FlowWatch {
     lies: bool,
     /// The same of motion that stabilizers have taken.
     is_stabilized: bool,
-    /// Account of the diffusion of density, if there is one, and whether the user has been told what it takes
-    /// of the work of walls.
+    /// Account of the diffusion of density, if there is one, and whether its share in the work of walls has
+    /// been reported.
     diffusion: Option<String>,
     is_driven: bool,
     closed: ClosedWatch,
@@ -56,7 +56,7 @@ struct FlowWatch {
     friction: Vec<Option<FrictionOfParticle>>,
 }
 
-/// Adds the system that looks.
+/// Adds the system of the checks.
 pub fn add(phases: Vec<PhaseId>, spacing: f64, diffusion: Option<String>, sim: &mut SimBuilder<'_>) {
     let watch = FlowWatch {
         intrusion: Intrusion::new(sim, spacing),

@@ -26,13 +26,13 @@ pub struct BlockLists {
     pub fluid: NearRows,
     /// Boundary particles near the fluids.
     pub walls: NeighborList,
-    /// For the blocks of what bounds the fluids, which come after those of fluids: the fluid particles near
-    /// any of each. None where thin bodies hide some of what is near.
+    /// For the blocks of boundaries, which come after those of fluids: the fluid particles near any particle
+    /// of each. None where thin bodies hide some of them.
     pub boundary: NeighborList,
     /// Lists of other ranks' blocks.
     pub others: OtherRows,
-    /// For each pair of `walls`, the particles of the block that see the neighbour, a bit each; empty, as are
-    /// the bits of `fluid`, where all see what is near.
+    /// For each pair of `walls`, a bit for each particle of the block that sees the neighbour; empty, as are
+    /// the bits of `fluid`, where all see it.
     seen_walls: Vec<u8>,
     units: Units,
     /// How many fluid particles are near each particle of a block.
@@ -57,7 +57,7 @@ pub struct ListSources<'a> {
     pub periodic: &'a Periodic,
     /// Visibility beside thin bodies, with the boundary particles near each particle, visible or not.
     pub sides: Option<(Sides<'a>, NeighborList)>,
-    /// Whether every rank looks at all boundary particles.
+    /// Whether every rank needs all boundary particles.
     pub all_boundaries: bool,
 }
 
@@ -170,7 +170,7 @@ struct Sift<'a> {
     near: NearWriter<'a>,
 }
 
-/// `HIDDEN`: where some particles do not see what is near them.
+/// `HIDDEN`: where some particles do not see all near ones.
 struct Sifted<'a, const HIDDEN: bool>(Sift<'a>);
 
 impl<const HIDDEN: bool> BlockLoop for Sifted<'_, HIDDEN> {

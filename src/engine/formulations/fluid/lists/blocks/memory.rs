@@ -4,20 +4,20 @@ use super::lists::BlockLists;
 use super::record::{Packed, Units};
 use crate::formulations::fluid::lists::NearRows;
 
-/// The blocks of a flow, and what their passes read and write.
+/// The blocks of a flow, with input and output of their passes.
 pub struct Blocks {
     pub lists: BlockLists,
     pub units: Units,
     pub packed: Vec<Packed>,
     /// Neighbours within the support of any particle of a block.
     pub near: NearRows,
-    /// Whether thin bodies hide some of what is near from particles; the neighbours of every particle are
-    /// then written down in every step, and boundaries have no blocks.
+    /// Whether thin bodies hide near particles from some; the neighbours of every particle are then recorded
+    /// in every step, and boundaries have no blocks.
     pub hides: bool,
 }
 
 impl Blocks {
-    /// Those of a flow; `hides` says that thin bodies hide some of what is near from particles.
+    /// Those of a flow; `hides` says that thin bodies hide near particles from some.
     pub fn new(units: Units, hides: bool) -> Self {
         Self { lists: BlockLists::new(units), units, packed: Vec::new(), near: NearRows::default(), hides }
     }

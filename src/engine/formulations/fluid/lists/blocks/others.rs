@@ -21,7 +21,7 @@ pub struct OtherRows {
     pub(super) found: Vec<OnceLock<Box<[u32]>>>,
 }
 
-/// The blocks of a table that this rank computes, and all of the bodies that every rank looks at.
+/// The blocks of a table that this rank computes, and all of the bodies that every rank needs.
 pub fn own_blocks(
     table: &BlockTable,
     looks_at_all: impl Fn(&Range<usize>) -> bool,
@@ -31,7 +31,7 @@ pub fn own_blocks(
 }
 
 impl OtherRows {
-    /// Begins anew, with these blocks of this rank among `count`.
+    /// Starts again, with these blocks of this rank among `count`.
     pub fn begin(&mut self, own: impl Iterator<Item = Range<usize>>, count: usize) {
         self.own.clear();
         self.own.extend(own);

@@ -68,7 +68,7 @@ pub fn pack_places(packed: &mut Vec<Packed>, positions: &[DVec3], units: &Units)
     });
 }
 
-/// Packs volumes, velocities and pressures anew.
+/// Packs volumes, velocities and pressures again.
 pub fn pack_states(packed: &mut [Packed], records: &[FlowParticle]) {
     for_each_block((packed, records), &mut Vec::new(), &|_, (packed, records): Slices<'_>| {
         for (packed, record) in packed.iter_mut().zip(records) {
@@ -85,7 +85,7 @@ impl Packed {
         self.take_state(record);
     }
 
-    /// Takes volume, velocity and pressure anew.
+    /// Updates volume, velocity and pressure.
     #[inline(always)]
     pub fn take_state(&mut self, record: &FlowParticle) {
         self.volume = record.volume() as f32;

@@ -83,7 +83,7 @@ struct Compress<'a> {
     plane: bool,
 }
 
-/// `HIDDEN`: where some particles do not see what is near them; those who do get a bit each.
+/// `HIDDEN`: where some particles do not see all near ones; those that do have a bit each.
 struct AllCompressionBlocks<'a, const HIDDEN: bool, F> {
     pass: Compress<'a>,
     fluids: F,

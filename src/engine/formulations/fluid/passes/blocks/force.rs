@@ -29,7 +29,7 @@ pub struct BlockForce<'a> {
     pub cloud: &'a FlowCloud,
     pub group: &'a Group,
     pub blocks: &'a Blocks,
-    /// Whether the force is added to what is there already.
+    /// Whether the force is added to the present values.
     pub adds: bool,
 }
 
@@ -69,7 +69,7 @@ struct AllForceBlocks<'a> {
     pass: &'a BlockForce<'a>,
     terms: Option<&'a BoundTerms<'a>>,
     rows: ForceRows<'a>,
-    /// Memory that is kept for what the terms of each block learn.
+    /// Memory that is kept for the results of the terms of each block.
     sums: Option<&'a mut Vec<RateBounds>>,
 }
 

@@ -17,12 +17,12 @@ pub struct Landing<'a> {
     pub first: usize,
     /// Whether vectors have no z.
     pub plane: bool,
-    /// Whether forces are added to what is there already.
+    /// Whether forces are added to the present values.
     pub adds: bool,
 }
 
 /// Writes the forces on the particles of a block, [`PARTS`](crate::formulations::fluid::cloud::PARTS) parts
-/// of each, and what the terms make.
+/// of each, and the results of the terms.
 pub fn land(sums: &BlockForces, of_terms: &[TermSums], landing: Landing<'_>, rows: &mut ForceRows<'_>) {
     let Landing { particles, first, plane, adds } = landing;
     let ForceRows { written, parts } = rows;

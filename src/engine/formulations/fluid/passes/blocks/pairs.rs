@@ -48,7 +48,7 @@ impl BlockForces {
 pub struct Chunk<'c> {
     /// Their rows in the cloud.
     pub row: &'c [u32],
-    /// The bits of the particles of the block that see each; none where all see what is near.
+    /// The bits of the particles of the block that see each; none where all see it.
     pub seen: Option<&'c [u8]>,
     /// Whose pressures act.
     pub between: Between,

@@ -16,7 +16,7 @@ const OWN: f64 = 1e-3;
 /// Finds the particles beside edges and their motion.
 pub struct EdgeMotion {
     shapes: WallShapes,
-    /// For every particle of the walls, what the faces around it add up to.
+    /// For every particle of the walls, the sum over the faces around it.
     sums: Vec<FaceSums>,
     /// Rows of those with faces.
     touched: Vec<usize>,

@@ -7,7 +7,7 @@ use crate::parallel::for_each_block;
 /// In the place of a number for particles that have not been taken in.
 const NONE: u32 = u32::MAX;
 
-/// The faces before some fluid particles: n (x) n of their normals, by what they count for.
+/// The faces in front of some fluid particles: n (x) n of their normals, by their weights.
 #[derive(Default)]
 pub(super) struct FacesBefore {
     /// Number of each fluid particle among those that have been taken in.

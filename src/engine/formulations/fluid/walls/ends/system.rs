@@ -111,7 +111,7 @@ impl WallEnds {
         Ok(())
     }
 
-    /// Finds what is along walls for the particles beside edges.
+    /// Computes the projection onto walls for the particles beside edges.
     fn find_along(&mut self, cloud: &FlowCloud) {
         let Self { beside, faces, found, .. } = self;
         let nothing = |&i: &u32| (WallEnd { i: i as usize, along: DMat3::ZERO }, DVec3::ZERO);

@@ -112,7 +112,7 @@ pub struct Fill {
 }
 
 impl Fill {
-    /// Continues what is known of the gaps to the others, and to their other sides.
+    /// Continues the known pressures of the gaps to the others, and to their other sides.
     pub fn run(&mut self, cloud: &FlowCloud, gaps: &mut [Gap], motion: &BoundaryMotion<'_>) {
         self.numbers.clear();
         self.numbers.resize(cloud.records.len() - cloud.fluid, u32::MAX);

@@ -34,8 +34,7 @@ impl GapPressure {
         Self { gravity, spacing, ..Self::default() }
     }
 
-    /// Looks at what surrounds the particles beside gaps, and finds the fluid there; says whether there is
-    /// any pressure.
+    /// Finds the fluid and the other particles around those beside gaps; says whether there is any pressure.
     fn measure(&mut self, cloud: &FlowCloud) -> bool {
         let Self { gravity, spacing, gaps, fill, velocities, .. } = self;
         let particles = &cloud.pairs.gaps.particles[..];
