@@ -66,7 +66,7 @@ impl Plugin for ArtificialViscosity {
     }
 }
 
-/// Reynolds number of the artificial viscosity below which it decides what the flow does.
+/// Reynolds number of the artificial viscosity below which it dominates the flow.
 const LEAST_REYNOLDS: f64 = 50.0;
 
 impl ArtificialViscosity {

@@ -46,7 +46,7 @@ impl Criterion {
     }
 }
 
-/// A criterion and what it can read of the state of the law.
+/// A criterion with the state variables of the law that it reads.
 pub(crate) struct WatchedCriterion {
     criterion: Criterion,
     /// Whether the criterion sums plastic strain.

@@ -45,13 +45,13 @@ impl Then {
         if self.is_liquid() { mean } else { mean.min(0.0) }
     }
 
-    /// Whether what has failed resists changes of its volume alone.
+    /// Whether a failed particle resists changes of its volume only.
     fn is_liquid(self) -> bool {
         matches!(self, Self::NoDeviator | Self::RemovedAtSurface)
     }
 
-    /// Whether a failed particle of that deformation, volume ratio and cofactor holds together no more: it
-    /// would act on what is far away, at shapes that no time step follows.
+    /// Whether a failed particle of that deformation, volume ratio and cofactor has lost its integrity: it
+    /// would act over large distances, at shapes that no time step can follow.
     pub(crate) fn is_torn(self, volume: f64, cofactor: &DMat3) -> bool {
         let [x, y, z] = [cofactor.x_axis, cofactor.y_axis, cofactor.z_axis];
         let area = ((x.length_squared() + y.length_squared() + z.length_squared()) / 3.0).sqrt();
@@ -83,8 +83,8 @@ pub(crate) fn cauchy(p: &DMat3, f: &DMat3) -> Sym3 {
 /// Volume ratios between which the pressure of a failed particle follows its law; beyond them it stays.
 const VOLUMES: [f64; 2] = [0.3, 3.0];
 
-/// The deformation at failure, blown up or pressed together to the volume ratio `j`: what the law of a failed
-/// particle is shown. Its deviator and plastic flow stay as they were; only the pressure moves.
+/// The deformation at failure, scaled to the volume ratio `j`: the input of the law of a failed particle.
+/// Deviator and plastic strain do not change; only the pressure does.
 pub(crate) fn at_volume(at_failure: &DMat3, j: f64) -> DMat3 {
     let ratio = j.clamp(VOLUMES[0], VOLUMES[1]) / at_failure.determinant().clamp(VOLUMES[0], VOLUMES[1]);
     *at_failure * ratio.cbrt()

@@ -21,8 +21,8 @@ pub fn register(registry: &mut Registry) {
 }
 
 column! {
-    /// Temperature at the end of the last step: what is above it has come from elsewhere, such as plastic
-    /// work and friction.
+    /// Temperature at the end of the last step: a later rise comes from other sources, such as plastic work
+    /// and friction.
     pub struct ConductedTemperature(f64) = "conducted_temperature", "T_n", "K";
 }
 

@@ -33,7 +33,7 @@ pub fn add_off_cracks(sim: &mut SimBuilder<'_>, id: BodyId, account: &str, term:
     sim.add_pair_term(bodies, account, term);
 }
 
-/// Writes the fit to the neighbours that hold to its column.
+/// Writes the fit to the intact neighbours to its column.
 struct MeasureFit;
 
 impl FoldedTerm for MeasureFit {

@@ -103,7 +103,7 @@ impl Form {
 
 /// Account of the work of the forms without an energy.
 const WORK: &str = "hourglass_work";
-/// Account of what the viscous form takes.
+/// Account of the energy dissipated by the viscous form.
 const VISCOSITY: &str = "hourglass_viscosity";
 /// Resistance of `Variational` to the error across a pair, over that to the error along it. Where a body is
 /// twisted the errors of all pairs are across them, and bending has a part of them: without it a square bar

@@ -5,7 +5,7 @@ use meshless_engine::rigid::RigidBodies;
 use meshless_engine::schedule::{AccountKind, Clock, Run, Step, StepError};
 use meshless_engine::world::{BodyId, BodySet, Mass, Mobility, Velocity};
 
-/// Account of the energy ledger that holds what damping has taken.
+/// Account of the energy dissipated by the damping.
 const ACCOUNT: &str = "local_damping";
 
 /// When a damping acts.

@@ -32,7 +32,7 @@ impl BlockSum for LastMotion {
     }
 }
 
-/// Looks at the last step of a body, and keeps its forces for the next look.
+/// Evaluates the last step of a body, and keeps its forces for the next evaluation.
 pub fn look(step: &Step<'_>, id: BodyId) -> Result<LastMotion, StepError> {
     let (view, rows) = step.world.body_view(id);
     let force = view.read::<Force>()?;

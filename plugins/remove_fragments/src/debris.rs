@@ -25,8 +25,7 @@ pub(crate) fn add(sim: &mut SimBuilder<'_>, bodies: Vec<BodyId>, least_volume: f
     );
 }
 
-/// Marks debris at the end of a step, with the lists of that step, so that a run that goes on from a
-/// checkpoint finds the same.
+/// Marks debris at the end of a step, with the lists of that step, so that a resumed run finds the same.
 struct Marking {
     bodies: Vec<BodyId>,
     least_volume: f64,
@@ -60,8 +59,8 @@ struct Pieces {
 }
 
 impl Pieces {
-    /// Whether a particle belongs to a piece of fewer particles. One that has so many neighbours that it
-    /// cannot ends the search at once, so that a whole body costs a look at its rows.
+    /// Whether a particle belongs to a piece of fewer particles. A particle with so many neighbours that it
+    /// cannot ends the search at once, so that an intact body costs one pass over its rows.
     fn is_small(&mut self, solid: &dyn SolidPhase, row: usize) -> bool {
         let Self { particles, found } = self;
         found.clear();

@@ -120,7 +120,7 @@ impl TensileForce {
     }
 }
 
-/// Share of a force that would give so much energy, J, at most what it has taken before.
+/// Factor of a force that would supply so much energy, J: at most the energy that it has dissipated before.
 fn affordable(given: f64, taken: f64) -> f64 {
     if given > taken.max(0.0) { taken.max(0.0) / given } else { 1.0 }
 }

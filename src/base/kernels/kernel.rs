@@ -105,7 +105,7 @@ impl Kernel {
     }
 }
 
-/// [`Kernel`] as a type: what a [`KernelVisitor`] gets.
+/// [`Kernel`] as a type: the argument of a [`KernelVisitor`].
 #[derive(Debug, Clone, Copy)]
 pub struct ProfiledKernel<K: KernelProfile> {
     dimension: u32,

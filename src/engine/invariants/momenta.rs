@@ -38,7 +38,7 @@ impl Momenta {
     }
 }
 
-/// Largest changes of what a free body keeps, on the way to the end of its run.
+/// Largest changes of the conserved quantities of a free body during its run.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Thrown {
     /// Of the momentum, over the sizes of the momenta of all particles.

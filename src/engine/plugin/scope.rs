@@ -15,7 +15,7 @@ impl SimBuilder<'_> {
         self.scope_where(&|body| body.kind == kind, &|| format!("acts on {}", kind.words()))
     }
 
-    /// The bodies of the scope whose formulations take what is offered.
+    /// The bodies of the scope whose formulations have the offer.
     ///
     /// # Errors
     /// The plugin stands in a body that does not, or there is no body that does.

@@ -150,32 +150,32 @@ pub trait Recorder: Send {
     /// The run starts, or is resumed from a checkpoint.
     ///
     /// # Errors
-    /// What it writes cannot be written.
+    /// Its output cannot be written.
     fn start(&mut self, run: &RunInfo<'_>) -> Result<(), RecordError>;
 
     /// A frame: at the start, then at the first step end at or after each due time, and at the end.
     ///
     /// # Errors
-    /// What it writes cannot be written.
+    /// Its output cannot be written.
     fn frame(&mut self, frame: &Frame<'_>) -> Result<(), RecordError>;
 
     /// Values of time series at one time, s.
     ///
     /// # Errors
-    /// What it writes cannot be written.
+    /// Its output cannot be written.
     fn samples(&mut self, step: u64, time: f64, samples: &[Sample<'_>]) -> Result<(), RecordError>;
 
     /// Makes the output so far readable even if the program is killed now; called after every frame and
     /// before every checkpoint.
     ///
     /// # Errors
-    /// What it writes cannot be written.
+    /// Its output cannot be written.
     fn flush(&mut self) -> Result<(), RecordError>;
 
     /// The run is over, at its end or before; `warnings` are those of the run.
     ///
     /// # Errors
-    /// What it writes cannot be written.
+    /// Its output cannot be written.
     fn finish(&mut self, warnings: &[String]) -> Result<(), RecordError>;
 }
 

@@ -211,7 +211,7 @@ impl SolidBodies {
         self.found[k].control = energy;
     }
 
-    /// Forgets what terms have released in the last pass.
+    /// Resets the energies released by terms in the last pass.
     pub(super) fn forget_released(&mut self) {
         for sum in &mut self.found {
             let energies = sum.terms.iter_mut().chain([&mut sum.hessian, &mut sum.control]);
@@ -432,12 +432,12 @@ impl SolidBody {
         !self.terms.is_empty()
     }
 
-    /// Whether it has a stabilization with an energy of its own.
+    /// Whether it has a stabilization with an energy.
     pub fn has_hessian_residual(&self) -> bool {
         self.hessian.is_some_and(|own| own.form == HessianForm::FrameIndifferent)
     }
 
-    /// Whether anything resists motions that the gradient does not see.
+    /// Whether a stabilizer resists zero-energy modes.
     pub fn is_stabilized(&self) -> bool {
         !self.terms.is_empty() || self.hessian.is_some()
     }

@@ -34,7 +34,7 @@ pub struct SolidSum {
     pub strain: f64,
     /// Plastic work of the step, J.
     pub plastic_work: f64,
-    /// Work that damping took in the step, J.
+    /// Energy dissipated by damping in the step, J.
     pub damped: f64,
     /// Energy of each folded term, J.
     pub terms: [FoldedEnergy; MAX_TERMS],
@@ -47,7 +47,8 @@ pub struct SolidSum {
 }
 
 impl SolidSum {
-    /// All that stress, folded terms, the difference of Laplacians and the control along pairs hold, J.
+    /// Sum of the energies of stress, folded terms, the difference of Laplacians and the control along pairs,
+    /// J.
     pub fn stored(&self) -> f64 {
         let terms = self.terms.iter().chain([&self.hessian, &self.control]);
         self.strain + terms.map(|term| term.stored).sum::<f64>()
@@ -188,7 +189,7 @@ pub struct SolidBlock {
     pub first: usize,
     /// Displacement gradient H = F - I, with all digits of a small strain.
     pub gradient: [DMat3; BLOCK],
-    /// Error of the mean deformation, `sum_j V_j w_ij |F_i X_ij - x_ij|^2`, m2 times the unit of V w.
+    /// Hourglass residual, `sum_j V_j w_ij |F_i X_ij - x_ij|^2`, m2 times the unit of V w.
     pub residual: [f64; BLOCK],
     /// Reference volume V_0, m3.
     pub volume: [f64; BLOCK],
@@ -253,7 +254,7 @@ pub struct Constitutive<'a> {
     pub(super) law: &'a dyn SolidLaw,
     /// Folded terms of plugins.
     pub terms: &'a [&'a dyn FoldedTerm],
-    /// Measures of deformation that outlast cuts in the neighbourhood.
+    /// Corrections that keep F continuous when neighbours are lost.
     pub(super) refits: Option<&'a Refits>,
     /// Length of the step, s; zero before the first.
     pub dt: f64,
@@ -263,9 +264,9 @@ pub struct Constitutive<'a> {
 
 impl Constitutive<'_> {
     /// Computes the stress of a block whose deformation gradient is there, and calls `make` with the stress
-    /// that enters the force: that of the law with that of damping. Each particle makes the share of its
-    /// force, energy and heat that it is `carried` to: 1 as a rule; none for a particle that has no
-    /// deformation gradient for want of neighbours; other shares beside what is held.
+    /// that enters the force: that of the law with that of damping. The share that a particle carries of its
+    /// force, energy and heat is `carried`: usually 1; zero for a particle without a deformation gradient,
+    /// for lack of neighbours; different beside supports.
     pub fn stress(
         &self,
         rows: &mut SolidRows<'_>,

@@ -22,8 +22,8 @@ column! {
     /// Inverse mass per axis; zero along an axis whose motion is prescribed, so that no force moves it.
     pub struct Mobility(DVec3) = "mobility", "1/m", "1/kg";
     /// Whether the particle has been removed from the run. It is [`Removed::NO`] or [`Removed::YES`]. A
-    /// removed particle stays a row that nothing moves: it carries no stress and no force, and lists and sums
-    /// leave it out. The systems of [`removal`](crate::removal) set it, and nothing takes it back.
+    /// removed particle keeps its row: it does not move, carries no stress and no force, and lists and sums
+    /// leave it out. The systems of [`removal`](crate::removal) set it, permanently.
     pub struct Removed(u32) = "removed", "-", "1";
     /// Volume in the reference configuration; in two dimensions per metre of thickness.
     pub struct ReferenceVolume(f64) = "reference_volume", "V0", "m^3";
@@ -62,18 +62,18 @@ column! {
     pub struct Damage(f64) = "damage", "D", "1";
     /// Temperature.
     pub struct Temperature(f64) = "temperature", "T", "K";
-    /// Modulus that hourglass control resists with.
+    /// Modulus in the stiffness of hourglass control.
     pub struct HourglassModulus(f64) = "hourglass_modulus", "E_h", "Pa";
     /// Hourglass residual of the last step, `sum_j V_j w_ij |F_i X_ij - x_ij|^2`.
     pub struct HourglassResidual(f64) = "hourglass_residual_before", "e^2", "1";
-    /// Deformation gradient that hourglass control of bodies that can fail compares with: the fit to the
-    /// neighbours that hold.
+    /// Deformation gradient for the hourglass residual in bodies that can fail: the fit to the intact
+    /// neighbours.
     pub struct HourglassGradient(DMat3) = "hourglass_gradient", "F_h", "1";
 }
 
 impl Removed {
     /// The particle takes part in the run.
     pub const NO: Self = Self(0);
-    /// The particle has been taken out.
+    /// The particle has been removed.
     pub const YES: Self = Self(1);
 }
