@@ -22,7 +22,7 @@ pub mod prelude;
 
 use plugin::Registry;
 
-/// Everything that the `meshless` program knows by name: what the engine brings, and the standard plugins.
+/// All names that the `meshless` program knows: those of the engine, and the standard plugins.
 pub fn standard_plugins() -> Registry {
     Registry::standard()
         .with(hourglass_control::register)

@@ -1,4 +1,4 @@
-//! `meshless check`: what a scene will cost and whether it can run, without writing anything.
+//! `meshless check`: the cost of a scene and whether it can run, without writing anything.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -58,7 +58,7 @@ struct CheckReport<'a> {
     warnings: &'a [String],
 }
 
-/// Builds the scene, does some steps in memory, and says what was found.
+/// Builds the scene, does some steps in memory, and prints the results.
 pub fn execute(arguments: &CheckArguments, registry: &Registry) -> Result<(), CommandFailure> {
     let (scene, source) = arguments.scene.load()?;
     let mut sim = assembly::build(&scene, &source, registry)?;

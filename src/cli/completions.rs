@@ -1,4 +1,4 @@
-//! `meshless completions` and `meshless manual`: what shells and `man` want to know of the command line.
+//! `meshless completions` and `meshless manual`: the command line for shells and for `man`.
 
 use clap::{Args, CommandFactory};
 use clap_complete::Shell;

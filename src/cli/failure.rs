@@ -8,7 +8,7 @@ use thiserror::Error;
 use super::interrupt::exit_code;
 use super::text::{complain, in_colour};
 
-/// Why a command did not do what it was asked to.
+/// Failure of a command.
 #[derive(Debug, Error)]
 pub enum CommandFailure {
     /// The scene cannot be used. Exit code 2.
@@ -20,7 +20,7 @@ pub enum CommandFailure {
     /// The run failed, or a file could not be read or written. Exit code 1.
     #[error("error: {0}")]
     Run(String),
-    /// One of several ranks has told the user already. The exit code of what it told.
+    /// One of several ranks has printed the error already. Its exit code.
     #[error("the run has failed")]
     #[cfg_attr(
         not(feature = "mpi"),

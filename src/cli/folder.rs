@@ -1,4 +1,4 @@
-//! The output folder of a run: its default, and what is in it.
+//! The output folder of a run: its default, and its content.
 
 use std::fs::File;
 use std::io::Read;

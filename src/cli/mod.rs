@@ -1,4 +1,4 @@
-//! The command line: a file for each command, and what they share.
+//! The command line: a file for each command, and shared parts.
 
 mod bench;
 mod check;

@@ -1,4 +1,4 @@
-//! `meshless plugins`: what scenes may name, and the parameters of each.
+//! `meshless plugins`: the names allowed in scenes, and their parameters.
 
 use std::fmt::Write;
 
@@ -83,7 +83,7 @@ fn language(registry: &Registry) -> Vec<(&'static str, Vec<(String, String)>)> {
     sections
 }
 
-/// All types of the scene and of the parameters of what is registered.
+/// All types of the scene and of the parameters of registered items.
 fn documented(registry: &Registry) -> Vec<TypeDoc> {
     let mut docs = type_docs::<Scene>();
     for kind in KINDS {

@@ -4,7 +4,7 @@ use meshless_engine::simulation::Summary;
 
 use super::text::TextTable;
 
-/// Time of every system, its share of the wall time, and what it costs for a particle and a step.
+/// Time of every system, its share of the wall time, and its cost per particle and step.
 pub fn text(summary: &Summary, steps: u64) -> String {
     let wall = summary.wall_seconds;
     let work = (steps as f64 * summary.particles as f64).max(1.0);

@@ -71,7 +71,7 @@ fn on_ranks<T>(size: usize, _: impl FnOnce() -> Result<T, CommandFailure>) -> Re
     )))
 }
 
-/// Refuses ranks that differ in what must be the same for all of them.
+/// Rejects ranks that differ in a value that must be the same for all of them.
 pub fn require_equal(what: &str, value: &str) -> Result<(), CommandFailure> {
     let mut hasher = DefaultHasher::new();
     value.hash(&mut hasher);
@@ -81,7 +81,7 @@ pub fn require_equal(what: &str, value: &str) -> Result<(), CommandFailure> {
     }
 }
 
-/// The prepared value, if all ranks have succeeded. A failure of this rank alone is told by it.
+/// The prepared value, if all ranks have succeeded. A failure of this rank only is printed by it.
 pub fn all_or_none<T>(prepared: Result<T, CommandFailure>) -> Result<T, CommandFailure> {
     if !ranks::has_several() || !ranks::any(prepared.is_err()) {
         return prepared;

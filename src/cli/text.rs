@@ -48,7 +48,7 @@ pub fn in_colour() -> bool {
     std::io::stderr().is_terminal() && !unwanted
 }
 
-/// Prints what went wrong or needs a look.
+/// Prints an error or a warning.
 pub fn complain(text: &str) {
     if !speaks() {
         return;
@@ -72,7 +72,7 @@ pub fn quoted(argument: &str) -> String {
     }
 }
 
-/// A number, with a decimal prefix where it is large, and what it counts: `1.23 M particles`.
+/// A number, with a decimal prefix where it is large, and its unit or noun: `1.23 M particles`.
 pub fn counted(value: f64, what: &str) -> String {
     let prefixes = [(1e9, "G"), (1e6, "M"), (1e3, "k")];
     match prefixes.iter().find(|(scale, _)| value.abs() >= *scale) {

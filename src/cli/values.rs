@@ -1,4 +1,4 @@
-//! Values of options: what is expected is said where it is not found.
+//! Values of options, and errors that state the expected form.
 
 use std::fmt::Display;
 use std::ops::RangeInclusive;

@@ -15,7 +15,7 @@ pub enum Tolerance {
     Above,
 }
 
-/// A measured value, what it is compared with, and where that comes from.
+/// A measured value, its reference, and the source of the reference.
 #[derive(Clone, Debug)]
 pub struct Check {
     /// The measured quantity.

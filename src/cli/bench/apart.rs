@@ -5,7 +5,7 @@ use std::process::{Command, Stdio};
 use super::super::failure::CommandFailure;
 use super::measure::{BenchSetUp, Measurement};
 
-/// Calls this program with the one set-up and reads what it measures.
+/// Calls this program with the one set-up and reads its measurement.
 pub fn take(set_up: &BenchSetUp<'_>, instructions: Option<&str>) -> Result<Measurement, CommandFailure> {
     let BenchSetUp { case, particles, ranks, threads, least } = *set_up;
     let failed = |error: &dyn std::fmt::Display| CommandFailure::Run(format!("{}: {error}", case.name));

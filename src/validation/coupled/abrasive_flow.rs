@@ -96,7 +96,8 @@ fn wear(registry: &Registry, across: usize, speed: f64, end: f64) -> Result<Worn
     })
 }
 
-/// The figures of all runs: what depends on chance as its mean, what must hold in every run as its worst.
+/// The figures of all runs: means of random quantities, and the worst values of those that must hold in every
+/// run.
 fn checks(runs: &[WornRun]) -> Vec<Check> {
     let mean = |of: fn(&WornRun) -> f64| runs.iter().map(of).sum::<f64>() / runs.len() as f64;
     let largest = |of: fn(&WornRun) -> f64| runs.iter().map(of).fold(f64::NEG_INFINITY, f64::max);

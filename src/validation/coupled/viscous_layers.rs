@@ -19,7 +19,7 @@ pub(crate) const CASE: Case = Case {
 
 const SLAB: &str = include_str!("../../../tests/validation/viscous_layers/reference.csv");
 /// Speed of the walls, m/s, their angular frequency, 1/s, and the time that is looked at: the last four
-/// seconds are two periods. At 12 s what is left of the start still makes 2 %.
+/// seconds are two periods. At 12 s the transient of the start still is 2 %.
 const SPEED: f64 = 0.4;
 const OMEGA: f64 = std::f64::consts::PI;
 const FROM: f64 = 22.0;

@@ -1,4 +1,4 @@
-//! A body whose particles all deform alike: what one of them is, if they agree.
+//! A homogeneously deformed body: the value of one of its particles, if all agree.
 
 use anyhow::{Context, Result, ensure};
 use meshless_engine::glam::{DMat3, DVec3};

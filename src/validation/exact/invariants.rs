@@ -1,4 +1,4 @@
-//! K2, K3, K4 and K6: what holds exactly for an irregular total-Lagrangian body and its stabilizers.
+//! K2, K3, K4 and K6: exact properties of an irregular total-Lagrangian body and its stabilizers.
 
 use std::f64::consts::PI;
 

@@ -1,4 +1,4 @@
-//! Cases K and M: what holds exactly, of kernels, neighbours, forces and laws.
+//! Cases K and M: exact properties of kernels, neighbours, forces and laws.
 
 pub mod homogeneous;
 pub mod invariants;

@@ -1,4 +1,4 @@
-//! F5b: a dam break, its front, and what sensors in the far wall show.
+//! F5b: a dam break, its front, and the readings of sensors in the far wall.
 
 use anyhow::{Context, Result};
 use meshless_engine::formulations::fluid::FlowCloud;

@@ -48,7 +48,7 @@ fn mass(simulation: &Simulation, bodies: [BodyId; 2]) -> Result<f64> {
     Ok(total)
 }
 
-/// Force on water and box from outside, N: their weight, and the opposite of what the tank gets from them.
+/// Force on water and box from outside, N: their weight, and the opposite of their force on the tank.
 fn outside(simulation: &Simulation, bodies: [BodyId; 2], tank: BodyId) -> Result<DVec3> {
     let (view, rows) = simulation.world().body_view(tank);
     let (force, own) = (view.read::<Force>()?, view.read::<Mass>()?);

@@ -1,4 +1,4 @@
-//! The energy balance of a run, and what each kind of run may miss of it.
+//! The energy balance of a run, and its tolerance for each kind of run.
 //!
 //! Every energy has an account, so that the residual is the error of the leapfrog. It is that of the square
 //! of the step where bodies and flows move smoothly, and that of single steps where something begins or ends
@@ -52,7 +52,7 @@ impl Balance {
         self.scale = ledger.largest();
     }
 
-    /// Compares it with what such a run may miss.
+    /// Compares it with the tolerance of such a run.
     pub fn check(self, kind: Kind) -> Check {
         Check::below("energy balance error", self.error / self.scale, kind.limit(), "every joule is booked")
     }

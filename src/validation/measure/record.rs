@@ -1,4 +1,4 @@
-//! Records over time: what is read from references, extremes, crossings.
+//! Records over time: values from references, extremes, crossings.
 
 use anyhow::{Context, Result, ensure};
 

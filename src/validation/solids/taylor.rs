@@ -1,4 +1,4 @@
-//! Taylor bars: what is measured of the body that hits a wall.
+//! Taylor bars: measurements of the body that hits a wall.
 
 use anyhow::{Context, Result, ensure};
 use meshless_engine::glam::DVec3;
