@@ -119,8 +119,19 @@ impl<R: Region + ?Sized> Region for DifferenceRegion<R> {
         openings::through(self, point, whole, hole).or_else(edge).unwrap_or(distance)
     }
 
+    /// Those of the whole, up to a hole that takes all of one of its ends away.
     fn bounds(&self) -> Aabb {
-        self.whole.bounds()
+        let mut bounds = self.whole.bounds();
+        for axis in 0..self.axes {
+            let Some([from, to]) = self.hole.slab(axis, &bounds) else { continue };
+            let (min, max) = (bounds.min[axis], bounds.max[axis]);
+            if from <= min && to < max {
+                bounds.min[axis] = to.max(min);
+            } else if to >= max && from > min {
+                bounds.max[axis] = from.min(max);
+            }
+        }
+        bounds
     }
 
     fn volume(&self) -> Option<f64> {

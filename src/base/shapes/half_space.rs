@@ -24,6 +24,12 @@ impl Region for HalfSpace {
     fn volume(&self) -> Option<f64> {
         Some(f64::INFINITY)
     }
+
+    fn slab(&self, axis: usize, _within: &Aabb) -> Option<[f64; 2]> {
+        let (along, place) = (self.normal[axis], self.point[axis]);
+        let is_across = along.abs() == self.normal.length();
+        is_across.then_some(if along > 0.0 { [f64::NEG_INFINITY, place] } else { [place, f64::INFINITY] })
+    }
 }
 
 impl Surface for HalfSpace {

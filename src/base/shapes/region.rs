@@ -125,6 +125,17 @@ pub trait Region: Send + Sync {
         Vec::new()
     }
 
+    /// From where to where along an axis \[m\] the region is known to fill a box from side to side.
+    fn slab(&self, axis: usize, within: &Aabb) -> Option<[f64; 2]> {
+        let mut faces = [Vec::new(), Vec::new(), Vec::new()];
+        if !self.box_faces(&mut faces) || faces[0].len() != 2 {
+            return None;
+        }
+        let fills =
+            |k: usize| faces[k].is_empty() || faces[k][0] <= within.min[k] && within.max[k] <= faces[k][1];
+        (0..3).all(|k| k == axis || fills(k)).then(|| [faces[axis][0], faces[axis][1]])
+    }
+
     /// Appends the coordinates of the faces and returns true if the region is made of boxes along the axes
     /// alone.
     fn box_faces(&self, _faces: &mut [Vec<f64>; 3]) -> bool {

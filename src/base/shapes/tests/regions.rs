@@ -113,6 +113,24 @@ fn bounds_are_tight() {
 }
 
 #[test]
+fn what_takes_an_end_away_moves_the_bounds() {
+    let bounds = |hole: &str| {
+        let ring = format!("Difference(Ring(center: (0, 0), inner: 1, outer: 2), {hole})");
+        let Aabb { min, max } = region(&ring, Two).bounds();
+        [min.x, min.y, max.x, max.y]
+    };
+    let arch = [-2.0, 0.5, 2.0, 2.0];
+    assert_eq!(bounds("HalfSpace(point: (3, 0.5), normal: (0, 2))"), arch);
+    assert_eq!(bounds("Box(min: (-2, -9), max: (2, 0.5))"), arch);
+    assert_eq!(bounds("Box(min: (0.5, -9), max: (9, 9))"), [-2.0, -2.0, 0.5, 2.0]);
+    // Something of the ring is left beside these, at every end.
+    let whole = [-2.0, -2.0, 2.0, 2.0];
+    assert_eq!(bounds("Box(min: (-1.9, -9), max: (2, 0.5))"), whole);
+    assert_eq!(bounds("Box(min: (-9, -0.1), max: (9, 0.1))"), whole);
+    assert_eq!(bounds("HalfSpace(point: (0, 0), normal: (1, 1))"), whole);
+}
+
+#[test]
 fn volumes_of_nested_boxes_are_exact() {
     let frame = "Difference(Box(min: (0, 0, 0), max: (3, 3, 3)), Union([
         Box(min: (1, 1, -1), max: (2, 2, 4)), Box(min: (-1, 1, 1), max: (4, 2, 2)), Box(min: (1, -1, 1), max: (2, 4, 2))]))";

@@ -1,10 +1,27 @@
 //! Bodies with initial overlap.
 
-use crate::contact::bodies::{ContactSides, SideNodes};
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use crate::contact::bodies::{ContactSides, NodeView, SideNodes};
 use crate::contact::system::Touching;
 use crate::notation;
 use crate::plugin::{Setup, SetupError, SimBuilder};
-use crate::rigid::RigidBodies;
+use crate::rigid::{RigidBodies, RigidBody};
+use crate::schedule::StepError;
+use crate::skins::{Skin, SkinColumns};
+
+/// A body that must not start inside a rigid one.
+enum Start {
+    /// With its nodes.
+    Nodes(ContactSides),
+    /// With its skin and its particles.
+    Skin(Arc<Skin>, ContactSides),
+}
+
+/// How deep the skin, and the centre of a particle, may be inside at the start, over the spacing.
+const SKIN_SHARE: f64 = 0.25;
 
 /// Adds the check that no body starts inside a rigid one; `numbers` are those of the contacts in the scene.
 pub(super) fn refuse_bodies_within_others(
@@ -15,21 +32,57 @@ pub(super) fn refuse_bodies_within_others(
     let mut checks = Vec::new();
     for (pair, number) in touching.iter().zip(numbers) {
         match pair {
-            Touching::Surface(contact) => checks.push((contact.sides.clone(), number)),
-            Touching::SkinOnTool(contact) => checks.push((contact.sides.clone(), number)),
+            Touching::Surface(contact) => checks.push((Start::Nodes(contact.sides.clone()), number)),
+            Touching::SkinOnTool(contact) => {
+                checks.push((Start::Skin(Arc::clone(&contact.patch.skin), contact.sides.clone()), number));
+            }
             Touching::Particles(_) | Touching::Skins(_) => {}
         }
     }
-    sim.add_setup(move |setup| checks.iter().try_for_each(|(sides, number)| check(sides, *number, setup)));
+    sim.add_setup(move |setup| checks.iter().try_for_each(|(start, number)| check(start, *number, setup)));
 }
 
-fn check(sides: &ContactSides, number: usize, setup: &mut Setup<'_>) -> Result<(), SetupError> {
-    let bodies = setup.resources.get::<RigidBodies>();
-    let found = sides.with(setup.world, setup.resources, &bodies, |nodes, tool| sides.inside(nodes, tool));
-    let Some(place) = found.map_err(|error| SetupError::internal(&error))? else { return Ok(()) };
+impl Start {
+    fn sides(&self) -> &ContactSides {
+        match self {
+            Self::Nodes(sides) | Self::Skin(_, sides) => sides,
+        }
+    }
+
+    /// What of the body is inside the other one, and where, m.
+    fn inside(&self, setup: &Setup<'_>) -> Result<Option<(&'static str, DVec3)>, StepError> {
+        let bodies = setup.resources.get::<RigidBodies>();
+        let sides = self.sides();
+        let what = if matches!(sides.nodes, SideNodes::Rigid) { "a point" } else { "a particle" };
+        let nodes = |deep: &dyn Fn(&NodeView<'_>, &RigidBody) -> Option<DVec3>| {
+            let place = sides.with(setup.world, setup.resources, &bodies, deep)?;
+            Ok(place.map(|place| (what, place)))
+        };
+        let Self::Skin(skin, _) = self else { return nodes(&|nodes, tool| sides.inside(nodes, tool)) };
+        let deepest = -SKIN_SHARE * skin.spacing;
+        let is_deep = |x: DVec3, tool: &RigidBody| sides.closest(x, tool).signed_distance < deepest;
+        let columns = SkinColumns::new(skin, setup.world)?;
+        let vertices: Vec<u32> = (0..skin.vertices() as u32).collect();
+        let surface = nodes(&|_, tool| {
+            let mut found = None;
+            columns.view().places(&vertices, &mut |_, x, _| {
+                found = found.or_else(|| is_deep(x, tool).then_some(x));
+            });
+            found
+        })?;
+        if let Some((_, place)) = surface {
+            return Ok(Some(("the surface", place)));
+        }
+        nodes(&|nodes, tool| (0..nodes.len()).map(|i| nodes.position(i)).find(|x| is_deep(*x, tool)))
+    }
+}
+
+fn check(start: &Start, number: usize, setup: &mut Setup<'_>) -> Result<(), SetupError> {
+    let found = start.inside(setup).map_err(|error| SetupError::internal(&error))?;
+    let Some((what, place)) = found else { return Ok(()) };
+    let sides = start.sides();
     let name = |id| &setup.world.body(id).name;
     let (first, second) = (name(sides.first), name(sides.second));
-    let what = if matches!(sides.nodes, SideNodes::Rigid) { "a point" } else { "a particle" };
     Err(SetupError::parameter(
         format!("contacts[{number}].between"),
         format!("{what} of `{first}` starts inside rigid body `{second}`, at {}", notation::place(place)),

@@ -195,7 +195,25 @@ fn a_body_may_not_start_inside_a_tool() {
     let (scene, source) = crate::scene::parse(crate::scene::Source::new("x.ron", text)).unwrap();
     let error = crate::assembly::build(&scene, &source, &crate::plugin::Registry::standard());
     let Err(error) = error else { panic!("it was built") };
-    assert!(error.to_string().contains("a particle of `block` starts inside rigid body `tool`"), "{error}");
+    assert!(error.to_string().contains("the surface of `block` starts inside rigid body `tool`"), "{error}");
+}
+
+/// The particles of a lattice beside a curved side are nearer to it than half a spacing.
+#[test]
+fn a_body_may_start_on_a_curved_tool() {
+    let sim = simulation(
+        r#"(dimension: Two,
+        materials: {"soft": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)},
+        bodies: [
+            (name: "arch", material: "soft", spacing: 0.002, formulation: TotalLagrangian,
+             shape: Difference(Ring(center: (0, 0), inner: 0.1, outer: 0.108), HalfSpace(point: (0, 0), normal: (0, 1)))),
+            (name: "drum", material: "soft", shape: Sphere(center: (0, 0), radius: 0.1), spacing: 0.01,
+             formulation: Rigid()),
+        ],
+        contacts: [Contact(between: ("arch", "drum"), law: Penalty())],
+        time: (end: 1e-3))"#,
+    );
+    assert_eq!(sim.world().bodies().len(), 2);
 }
 
 /// A block between a fixed table and a tool that presses it with that motion; contacts of that kind, up to
