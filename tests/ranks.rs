@@ -145,6 +145,42 @@ fn flows_that_slide_along_walls() {
     assert_equal_bits("shifted", &sliding(false, false, "density_diffusion(), particle_shifting()"), 300);
 }
 
+/// Oil in a vessel with a piston that moves along its walls, all of these of that kind.
+fn pushed(dimension: usize, wall: &str, viscosity: f64) -> Source {
+    let [kind, z, spacing] = if dimension == 3 { ["Three", ", 0.3", "0.05"] } else { ["Two", "", "0.02"] };
+    let [z0, out] = if dimension == 3 { [", 0", ", 0.5"] } else { ["", ""] };
+    let below = if dimension == 3 { ", -0.2" } else { "" };
+    let text = format!(
+        r#"(dimension: {kind}, gravity: (0.0, -9.81),
+            materials: {{"oil": Fluid(density: 1000.0, sound_speed: 30.0, viscosity: {viscosity:?})}},
+            bodies: [
+                (name: "oil", material: "oil", shape: Box(min: (0, 0{z0}), max: (0.6, 0.4{z})), spacing: {spacing}, formulation: Fluid,
+                 plugins: [density_diffusion()]),
+                (name: "piston", material: "wall", shape: Box(min: (-0.2, 0{z0}), max: (0, 0.6{z})), spacing: {spacing}, formulation: Wall({wall})),
+                (name: "vessel", material: "wall", shape: Difference(Box(min: (-0.2, -0.2{below}), max: (0.8, 0.6{out})), Box(min: (-1, 0{z0}), max: (0.6, 1{z}))),
+                 spacing: {spacing}, formulation: Wall({wall})),
+            ],
+            conditions: [Displacement(on: Select(body: "piston"), value: ("0.05*sin(8*t)", 0.0))],
+            time: (end: 10.0))"#
+    );
+    Source::new("pushed.ron", text)
+}
+
+#[test]
+fn flows_between_several_walls() {
+    for dimension in [2, 3] {
+        let steps = if dimension == 2 { 200 } else { 60 };
+        let check = |wall, viscosity| {
+            let name = format!("{dimension} dimensions, {wall}");
+            assert_equal_bits(&name, &pushed(dimension, wall, viscosity), steps);
+        };
+        check("slip: Free", 0.0);
+        check("slip: No", 1.0);
+        check("slip: No, suction: true", 1.0);
+        check("slip: Free, suction: true", 0.0);
+    }
+}
+
 /// Who looks at particles of other ranks sees them as they are.
 #[test]
 fn probes_and_neighbours_of_a_flow_are_those_of_one_rank() {

@@ -16,7 +16,7 @@ use crate::formulations::fluid::lists::{
 };
 use crate::formulations::fluid::passes::blocks;
 use crate::formulations::fluid::setup::{advice, checks, rest, start};
-use crate::formulations::fluid::walls::{Repulsion, Slip, WallBody};
+use crate::formulations::fluid::walls::{Repulsion, Slip, WallBody, WallShapes};
 use crate::neighbors::Periodic;
 use crate::parallel::Lanes4;
 use crate::plugin::{BodyKind, BodyPlan, SetupError, SimBuilder};
@@ -74,7 +74,7 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     let (repulsion, reach) = Repulsion::new(&bodies.groups, common.kernel.smoothing_length(), sim);
     let groups = bodies.groups.clone();
     let mut cloud = cloud(bodies, common, reach, sim)?;
-    cloud.decide_what_others_know();
+    cloud.decide_what_others_know(WallShapes::are_asked_for(&groups, sim));
     let spin = cloud.viscosities.spin;
     advice::unfelt_walls(&walls, spin, sim);
     let (walls, touching, gravity) = (advice::walls(sim), sim.scene().touching_pairs(), sim.gravity());

@@ -80,13 +80,14 @@ impl Run for Neighbors {
         let mut cloud = step.resources.get_mut::<FlowCloud>();
         cloud.forget_loads();
         cloud.divide_boundaries(step.world);
+        let is_known_otherwise = cloud.decide_for_step(step.world)?;
         let moved = cloud.pack(step.world)?;
         let failed = |error: NeighborError| StepError::System {
             system: NEIGHBORS.to_owned(),
             message: error.to_string(),
         };
         let is_restored = std::mem::take(&mut self.is_restored);
-        if is_restored || cloud.is_divided_anew() {
+        if is_restored || cloud.is_divided_anew() || is_known_otherwise && cloud.pairs.builds > 0 {
             cloud.read_list_positions(step.world, &mut self.built)?;
             cloud.build_lists(&self.built).map_err(failed)?;
             if !is_restored {

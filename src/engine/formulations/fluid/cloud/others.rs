@@ -2,8 +2,8 @@
 //!
 //! The loops of most flows need only the particles near those of the rank, and ranks exchange no more than
 //! that. Probes, warnings and others that read particles elsewhere request the [whole
-//! cloud](FlowCloud::whole) first. In flows that move bodies, and beside walls with no slip or with suction,
-//! all ranks have all particles in every step.
+//! cloud](FlowCloud::whole) first. In flows that move bodies, and where walls have suction or move relative to
+//! each other, all ranks have all particles in every step.
 
 use std::cell::Ref;
 use std::ops::Range;
@@ -17,18 +17,42 @@ use crate::schedule::Resources;
 use crate::world::{MissingColumn, Velocity, World};
 
 impl FlowCloud {
-    /// Whether its loops need only the particles near their own ones: where all its boundaries are walls
-    /// along which it slides.
-    pub(in crate::formulations::fluid) fn decide_what_others_know(&mut self) {
+    /// Decides whether its loops need only the particles near their own ones: where all its boundaries are
+    /// walls without suction, and `has_edges` is false: no probe requests forces at edges between them.
+    pub(in crate::formulations::fluid) fn decide_what_others_know(&mut self, has_edges: bool) {
         let bounds = || self.groups.iter().filter(|group| group.fluid().is_none());
-        let is_plain = bounds().all(|group| group.is_wall() && !group.sticks() && !group.has_suction());
+        let is_plain = bounds().all(|group| group.is_wall() && !group.has_suction() && !group.short);
         let has_blocks = self.blocks.as_ref().is_some_and(|blocks| !blocks.hides);
-        self.others.is_local = has_blocks
-            && is_plain
-            && bounds().count() <= 1
-            && bounds().all(|group| !group.short)
-            && self.neighborhoods.is_empty()
-            && !self.viscosities.spin;
+        self.others.may_be_local = has_blocks && is_plain && !has_edges && self.neighborhoods.is_empty();
+        self.others.is_local = self.others.may_be_local;
+    }
+
+    /// Decides it for a step: where walls move relative to each other, loops need all particles beside their
+    /// edges. Returns whether the decision has changed.
+    pub(super) fn decide_for_step(&mut self, world: &World) -> Result<bool, MissingColumn> {
+        if !(has_several() && self.others.may_be_local) {
+            return Ok(false);
+        }
+        let is_local = !self.have_walls_parted(world)?;
+        Ok(std::mem::replace(&mut self.others.is_local, is_local) != is_local)
+    }
+
+    /// Whether any two walls move relative to each other.
+    fn have_walls_parted(&self, world: &World) -> Result<bool, MissingColumn> {
+        let bounds = || self.groups.iter().filter(|group| group.fluid().is_none());
+        if bounds().count() < 2 {
+            return Ok(false);
+        }
+        let mut first = None;
+        for group in bounds() {
+            let velocity = world.phase(group.phase).read::<Velocity>()?;
+            let mut of_group = velocity[group.rows.clone()].iter().map(|velocity| velocity.0);
+            let first = *first.get_or_insert(velocity[group.rows.start].0);
+            if of_group.any(|v| v != first) {
+                return Ok(true);
+            }
+        }
+        Ok(false)
     }
 
     /// Whether ranks have only those particles of others that are near their own ones.

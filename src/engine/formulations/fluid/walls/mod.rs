@@ -22,7 +22,7 @@ mod ends;
 
 mod gaps;
 
-pub use edges::{EdgeForces, EdgeMotion};
+pub use edges::{EdgeForces, EdgeMotion, WallShapes};
 pub use ends::WallEnds;
 pub use gaps::GapPressure;
 pub use repulsion::{RangeShortfall, Repulsion};

@@ -25,6 +25,13 @@ impl WallShapes {
         // Nothing is repelled here.
         let shape = |group| BoundaryShape::of(group, Vec::new(), 2.0 * sim.body(group.body).spacing, sim);
         let shapes: Vec<BoundaryShape> = walls.filter_map(shape).collect();
+        let are_asked = Self::are_asked_for(groups, sim);
+        (shapes.len() > 1).then_some(Self { shapes, are_asked })
+    }
+
+    /// Whether there are several walls, and a probe asks for forces on any.
+    pub fn are_asked_for(groups: &[Group], sim: &SimBuilder<'_>) -> bool {
+        let walls = || groups.iter().filter(|group| group.is_wall());
         let asks = |probe: &Probe| {
             let of_force = matches!(
                 probe.quantity,
@@ -34,10 +41,9 @@ impl WallShapes {
                     | Quantity::Moment { .. }
             );
             let on = probe.on.as_ref().filter(|_| of_force);
-            on.is_some_and(|on| shapes.iter().any(|shape| on.means(&sim.body(shape.group.body).name)))
+            on.is_some_and(|on| walls().any(|group| on.means(&sim.body(group.body).name)))
         };
-        let are_asked = sim.scene().probes.iter().any(asks);
-        (shapes.len() > 1).then_some(Self { shapes, are_asked })
+        walls().count() > 1 && sim.scene().probes.iter().any(asks)
     }
 
     /// Whether any two of these walls move against each other.

@@ -23,4 +23,5 @@ mod fronts;
 mod motion;
 
 pub use forces::EdgeForces;
+pub use fronts::WallShapes;
 pub use motion::EdgeMotion;
