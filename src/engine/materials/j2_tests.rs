@@ -186,3 +186,29 @@ fn a_return_from_what_is_no_number_is_none() {
         assert!(d.is_nan() || !hardening.needs_temperature());
     }
 }
+
+/// Just above the yield stress of a virgin metal the increment is `(excess / coefficient)^(1/exponent)`, of
+/// any size.
+#[test]
+fn a_steep_beginning_is_found() {
+    let coefficient = 5.0e8;
+    for exponent in [0.05, 0.1, 0.2, 0.5, 0.9] {
+        let hardening = Hardening::Power { yield_stress: YIELD, coefficient, exponent };
+        for excess in [1.0e-3, 1.0, 1.0e3, 1.0e5, 1.0e7, 1.0e9] {
+            let trial =
+                Trial { stress: YIELD + excess, shear: SHEAR, strain: 0.0, temperature: 300.0, dt: 1e-6 };
+            let d = trial.increment(&hardening);
+            let rest = excess - 3.0 * SHEAR * d - coefficient * d.powf(exponent);
+            assert!(d >= 0.0 && rest.abs() < 1e-11 * trial.stress, "{exponent} {excess}: {d} leaves {rest}");
+        }
+        let trial = Trial { stress: YIELD + 1e4, shear: SHEAR, strain: 0.0, temperature: 300.0, dt: 1e-6 };
+        if exponent < 0.4 {
+            let exact = (1e4 / coefficient).powf(1.0 / exponent);
+            let found = trial.increment(&hardening);
+            assert!(
+                (found / exact - 1.0).abs() < 1e-3 / exponent || found == exact,
+                "{exponent}: {found} {exact}"
+            );
+        }
+    }
+}

@@ -20,13 +20,18 @@ pub struct Trial {
 
 /// Share of the trial stress to which the return is solved.
 const ACCURACY: f64 = 1e-12;
+/// Share of an increment that is too large that is tried next, as long as none has been too small.
+const STRIDE: f64 = 1e-4;
 
 impl Trial {
     /// The increment d of the plastic strain with `stress - 3 mu d = flow stress after d`.
     ///
     /// The difference falls with d, is positive at 0 and not positive where the stress is gone: Newton's
     /// iteration keeps to that bracket and halves it where it would leave it, so that it ends for every law
-    /// that does not soften with strain. Input that is not a number gives NaN, which the watchdog sees.
+    /// that does not soften with strain. A law that hardens by a small power of the strain is so steep at its
+    /// beginning that d can be of any size: it is looked for downwards in large strides, and upwards from
+    /// there, where the iteration does not pass it. Input that is not a number gives NaN, which the watchdog
+    /// sees.
     pub fn increment(&self, hardening: &Hardening) -> f64 {
         let stiffness = 3.0 * self.shear;
         match *hardening {
@@ -44,7 +49,7 @@ impl Trial {
         let start = hardening.static_stress(self.strain, self.temperature);
         let mut d = ((self.stress - start) / stiffness).clamp(low, high);
         // Newton's iteration usually ends after four, halving alone after 60.
-        for k in 0..120 {
+        for k in 0..160 {
             let ValueAndSlope { value: flow, slope } =
                 hardening.flow_stress(self.strain, d, self.dt, self.temperature);
             let rest = self.stress - stiffness * d - flow;
@@ -60,8 +65,12 @@ impl Trial {
                 high = d;
             }
             let newton = d + rest / (stiffness + slope);
-            let newton_helps = k < 40 && newton > low && newton < high;
-            let next = if newton_helps { newton } else { 0.5 * (low + high) };
+            let newton_helps = k < 80 && newton > low && newton < high;
+            let next = match newton_helps {
+                true => newton,
+                false if low == 0.0 => STRIDE * d,
+                false => 0.5 * (low + high),
+            };
             if next == d {
                 return d;
             }
