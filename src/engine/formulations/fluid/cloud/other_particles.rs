@@ -5,8 +5,8 @@ use crate::ranks::Halo;
 /// Which rows of other ranks this one knows.
 #[derive(Debug, Default)]
 pub struct OtherParticles {
-    /// Whether loops need only the particles near their own ones unless walls move relative to each other, and
-    /// whether this holds in this step.
+    /// Whether loops need only the particles near their own ones unless walls move relative to each other,
+    /// and whether this holds in this step.
     pub(super) may_be_local: bool,
     pub(super) is_local: bool,
     /// Whether the records of all rows are those of now.
