@@ -2,8 +2,8 @@
 //!
 //! The loops of most flows need only the particles near those of the rank, and ranks exchange no more than
 //! that. Probes, warnings and others that read particles elsewhere request the [whole
-//! cloud](FlowCloud::whole) first. In flows that move bodies, and where walls have suction or move relative to
-//! each other, all ranks have all particles in every step.
+//! cloud](FlowCloud::whole) first. In flows that move bodies, and where walls have suction or move relative
+//! to each other, all ranks have all particles in every step.
 
 use std::cell::Ref;
 use std::ops::Range;
