@@ -197,7 +197,7 @@ impl FillErrorKind {
             Self::EqualPoints(..) => {
                 "leave one of them out; the first point is not repeated at the end".into()
             }
-            Self::EmptyRange { axis: 'z', .. } => "a point with two components has z = 0".into(),
+            Self::EmptyRange { axis: 'z', min: 0.0, max: 0.0 } => "a point with two components has z = 0".into(),
             Self::NoInside => {
                 "it can fill a body, but not be combined with shapes, select particles, or be a rigid body or tool".into()
             }

@@ -42,7 +42,7 @@ impl Error {
             Self::Reported => return Self::Reported,
             Self::Expected(expected) => {
                 let message = format!("expected {expected}, found {}", node.describe());
-                Problem::at_span(whole_or_head(node), message).helps(brackets_of_a_list(node, &expected))
+                Problem::at_span(whole_or_head(node), message).helps(notation_help(node, &expected))
             }
             Self::Length { found, expected } => {
                 let found = if found == 1 { "1 entry".into() } else { format!("{found} entries") };
@@ -64,14 +64,22 @@ impl Error {
     }
 }
 
-/// Help where entries stand in the round brackets of a name whose value is a list.
-fn brackets_of_a_list(node: &Node, expected: &str) -> Vec<String> {
-    match (&node.kind, &node.name) {
+/// Help where the value is right but for its notation: entries in the round brackets of a name whose value is
+/// a list, a single entry without brackets, a name in quotes.
+fn notation_help(node: &Node, expected: &str) -> Vec<String> {
+    let help = match (&node.kind, &node.name) {
         (NodeKind::Tuple(entries), Some(name)) if entries.len() > 1 && expected == A_LIST => {
-            vec![format!("write its entries as a list: `{}([...])`", name.text)]
+            format!("write its entries as a list: `{}([...])`", name.text)
         }
-        _ => Vec::new(),
-    }
+        (NodeKind::Bare, Some(name)) if expected == A_LIST => {
+            format!("write it as a list of one entry: `[{}]`", name.text)
+        }
+        (NodeKind::Text { value, .. }, _) if expected.contains(&format!("`{value}`")) => {
+            format!("write it without quotes: `{value}`")
+        }
+        _ => return Vec::new(),
+    };
+    vec![help]
 }
 
 /// All of a value for a message about what it is; of a long one the head only.

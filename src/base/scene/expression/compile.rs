@@ -126,7 +126,7 @@ impl Compiler<'_> {
                 let range = self.at..self.at + c.len_utf8();
                 self.error(range, format!("expected {expected}, found `{c}`"), "")
             }
-            None => self.error(self.at..self.at, format!("expected {expected}, found the end"), ""),
+            None => self.error(self.at..self.at, format!("expected {expected}, found nothing more"), ""),
         }
     }
 

@@ -66,18 +66,18 @@ fn knows_what_it_depends_on() {
 #[test]
 fn errors_point_at_their_place() {
     for (text, start, end, message) in [
-        ("1 +", 3, 3, "found the end"),
+        ("1 +", 3, 3, "found nothing more"),
         ("2*q", 2, 3, "unknown name `q`"),
         ("sinn(x)", 0, 4, "unknown name `sinn`"),
         ("min(1)", 0, 3, "`min` takes two arguments, found 1"),
         ("sin(x, y)", 0, 3, "`sin` takes one argument, found 2"),
         ("sin x", 0, 3, "without its argument"),
-        ("(1 + 2", 6, 6, "expected `)`, found the end"),
+        ("(1 + 2", 6, 6, "expected `)`, found nothing more"),
         ("2x", 1, 2, "expected an operator or the end, found `x`"),
         ("x**2", 1, 3, "found `**`"),
         ("1.2.3", 0, 5, "not a number"),
         ("1/0", 0, 3, "must be finite, found inf"),
-        ("", 0, 0, "found the end"),
+        ("", 0, 0, "found nothing more"),
         ("1 § 2", 2, 4, "found `§`"),
     ] {
         let error = text.parse::<Expression>().expect_err(text);

@@ -25,7 +25,7 @@ fn numbers_that_cannot_be() {
             "Box(min: (0, 0), max: (1, 1))",
             Three,
             "shape.max",
-            "the lower end of the z range must be below the upper end, found 0 and 0",
+            "the lower end of the z range must be below the upper end, found 0 and 0; a point with two components has z = 0",
         ),
         ("Box(min: (NaN, 0), max: (1, 1))", Two, "shape.min", "expected a finite number, found NaN"),
         ("Box(min: (0, 0), max: (1, inf))", Two, "shape.max", "expected a finite number, found inf"),

@@ -13,7 +13,7 @@ use crate::schedule::StepError;
 use crate::skins::{Skin, SkinColumns};
 
 /// A body that must not start inside a rigid one.
-enum Start {
+enum ContactStart {
     /// With its nodes.
     Nodes(ContactSides),
     /// With its skin and its particles.
@@ -32,9 +32,12 @@ pub(super) fn refuse_bodies_within_others(
     let mut checks = Vec::new();
     for (pair, number) in touching.iter().zip(numbers) {
         match pair {
-            Touching::Surface(contact) => checks.push((Start::Nodes(contact.sides.clone()), number)),
+            Touching::Surface(contact) => checks.push((ContactStart::Nodes(contact.sides.clone()), number)),
             Touching::SkinOnTool(contact) => {
-                checks.push((Start::Skin(Arc::clone(&contact.patch.skin), contact.sides.clone()), number));
+                checks.push((
+                    ContactStart::Skin(Arc::clone(&contact.patch.skin), contact.sides.clone()),
+                    number,
+                ));
             }
             Touching::Particles(_) | Touching::Skins(_) => {}
         }
@@ -42,7 +45,7 @@ pub(super) fn refuse_bodies_within_others(
     sim.add_setup(move |setup| checks.iter().try_for_each(|(start, number)| check(start, *number, setup)));
 }
 
-impl Start {
+impl ContactStart {
     fn sides(&self) -> &ContactSides {
         match self {
             Self::Nodes(sides) | Self::Skin(_, sides) => sides,
@@ -77,7 +80,7 @@ impl Start {
     }
 }
 
-fn check(start: &Start, number: usize, setup: &mut Setup<'_>) -> Result<(), SetupError> {
+fn check(start: &ContactStart, number: usize, setup: &mut Setup<'_>) -> Result<(), SetupError> {
     let found = start.inside(setup).map_err(|error| SetupError::internal(&error))?;
     let Some((what, place)) = found else { return Ok(()) };
     let sides = start.sides();
