@@ -51,16 +51,6 @@ fn the_table_of_modules_has_all_of_them_in_order() {
     );
 }
 
-/// Folders whose files and folders still import each other in circles; no other one may.
-const WITH_CIRCLES: &[&str] = &[
-    "src/base/kernels",
-    "src/base/parallel",
-    "src/base/scene",
-    "src/base/scene/decode",
-    "src/base/shapes",
-    "src/base/shapes/mesh",
-];
-
 /// The words that follow `path::` in a text, also in a list in braces.
 fn words_after<'t>(text: &'t str, path: &str) -> Vec<&'t str> {
     let is_word = |c: char| c.is_alphanumeric() || c == '_';
@@ -189,8 +179,7 @@ fn modules_of_a_folder_import_each_other_without_circles() {
     assert!(inside.len() > 60, "only {} folders are found", inside.len());
     for folder in inside {
         let waiting = circles_of(folder);
-        let may_have = WITH_CIRCLES.contains(&folder.as_str());
-        assert_eq!(!waiting.is_empty(), may_have, "{folder}: circles among {}", waiting.join(", "));
+        assert!(waiting.is_empty(), "{folder}: circles among {}", waiting.join(", "));
     }
 }
 

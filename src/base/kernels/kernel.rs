@@ -1,8 +1,8 @@
-//! A kernel chosen at run time, and the same kernel as a type for hot loops.
+//! A kernel chosen at run time.
 
 use super::profile::KernelProfile;
+use super::profiled::ProfiledKernel;
 use super::registry::{KernelName, KernelVisitor};
-use std::marker::PhantomData;
 
 /// Kernel of a given dimension, chosen at run time.
 ///
@@ -100,64 +100,9 @@ impl Kernel {
         self.dispatch(Weight(r, smoothing_length))
     }
 
-    pub(super) fn profiled<K: KernelProfile>(&self) -> ProfiledKernel<K> {
-        ProfiledKernel { dimension: self.dimension, normalisation: self.normalisation, profile: PhantomData }
-    }
-}
-
-/// [`Kernel`] as a type: the argument of a [`KernelVisitor`].
-#[derive(Debug, Clone, Copy)]
-pub struct ProfiledKernel<K: KernelProfile> {
-    dimension: u32,
-    normalisation: f64,
-    profile: PhantomData<K>,
-}
-
-impl<K: KernelProfile> ProfiledKernel<K> {
-    /// The kernel of one smoothing length (m). Costs two divisions: outside the loop where h is the same for
-    /// all.
+    /// Runs `visitor` in the version compiled for this kernel: one branch per call, none per pair.
     #[inline]
-    pub fn scaled(&self, smoothing_length: f64) -> ScaledKernel<K> {
-        let inverse_h = 1.0 / smoothing_length;
-        let volume = match self.dimension {
-            1 => smoothing_length,
-            2 => smoothing_length * smoothing_length,
-            _ => smoothing_length * smoothing_length * smoothing_length,
-        };
-        ScaledKernel { inverse_h, scale: self.normalisation / volume, profile: PhantomData }
-    }
-}
-
-/// Kernel of one smoothing length: functions of the distance r (m) alone.
-#[derive(Debug, Clone, Copy)]
-pub struct ScaledKernel<K: KernelProfile> {
-    inverse_h: f64,
-    scale: f64,
-    profile: PhantomData<K>,
-}
-
-impl<K: KernelProfile> ScaledKernel<K> {
-    /// `W(r)` (1/m^d).
-    #[inline]
-    pub fn w(&self, r: f64) -> f64 {
-        self.scale * K::value(r * self.inverse_h)
-    }
-
-    /// `dW/dr <= 0` (1/m^(d+1)).
-    #[inline]
-    pub fn dw_dr(&self, r: f64) -> f64 {
-        self.scale * self.inverse_h * K::derivative(r * self.inverse_h)
-    }
-
-    /// `d2W/dr2` (1/m^(d+2)).
-    #[inline]
-    pub fn d2w_dr2(&self, r: f64) -> f64 {
-        self.scale * self.inverse_h * self.inverse_h * K::second_derivative(r * self.inverse_h)
-    }
-
-    /// Pair weight `|dW/dr| / r >= 0` (1/m^(d+2)).
-    #[inline]
-    pub fn pair_weight(&self, r: f64) -> f64 {
-        self.scale * self.inverse_h * self.inverse_h * K::weight(r * self.inverse_h)
+    pub fn dispatch<V: KernelVisitor>(&self, visitor: V) -> V::Output {
+        self.name.dispatch(self.dimension, self.normalisation, visitor)
     }
 }

@@ -10,6 +10,7 @@
 mod cubic_spline;
 mod kernel;
 mod profile;
+mod profiled;
 mod quartic_spline;
 mod quintic_spline;
 mod registry;
@@ -21,8 +22,9 @@ mod wendland_c4;
 mod wendland_c6;
 
 pub use cubic_spline::CubicSpline;
-pub use kernel::{Kernel, ProfiledKernel, ScaledKernel};
+pub use kernel::Kernel;
 pub use profile::KernelProfile;
+pub use profiled::{ProfiledKernel, ScaledKernel};
 pub use quartic_spline::QuarticSpline;
 pub use quintic_spline::QuinticSpline;
 pub use registry::{KernelName, KernelVisitor};

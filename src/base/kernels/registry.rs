@@ -1,12 +1,12 @@
 //! The list of kernels, and how a name in a scene becomes code compiled for that kernel.
 
-use super::kernel::{Kernel, ProfiledKernel};
 use super::profile::KernelProfile;
+use super::profiled::ProfiledKernel;
 use super::{CubicSpline, QuarticSpline, QuinticSpline, Spiky, WendlandC2, WendlandC4, WendlandC6};
 use std::fmt;
 
 /// Code that is compiled once for every kernel, so that the kernel is inlined in its loops; see
-/// [`Kernel::dispatch`].
+/// [`Kernel::dispatch`](super::Kernel::dispatch).
 pub trait KernelVisitor {
     /// Result of the code.
     type Output;
@@ -49,13 +49,20 @@ macro_rules! register_kernels {
             pub fn normalisation(self, dimension: usize) -> Option<f64> {
                 match self { $(Self::$profile => $profile::normalisation(dimension)),+ }
             }
-        }
 
-        impl Kernel {
-            /// Runs `visitor` in the version compiled for this kernel: one branch per call, none per pair.
+            /// Runs `visitor` in the version compiled for this kernel of a dimension and its sigma_d.
             #[inline]
-            pub fn dispatch<V: KernelVisitor>(&self, visitor: V) -> V::Output {
-                match self.name() { $(KernelName::$profile => visitor.visit(self.profiled::<$profile>())),+ }
+            pub(super) fn dispatch<V: KernelVisitor>(
+                self,
+                dimension: u32,
+                normalisation: f64,
+                visitor: V,
+            ) -> V::Output {
+                match self {
+                    $(Self::$profile => {
+                        visitor.visit(ProfiledKernel::<$profile>::new(dimension, normalisation))
+                    })+
+                }
             }
         }
     };

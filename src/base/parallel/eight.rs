@@ -1,73 +1,7 @@
-//! Numbers of eight lanes of single precision, in which a lane is a particle of a block.
+//! Instruction paths of eight lanes of single precision, in which a lane is a particle of a block.
 
-use bytemuck::{Pod, Zeroable};
-
-use super::arithmetic::{Arithmetic, FourLanes};
-use super::path::{HotLoop, run_wide};
-use super::plane::InPlane;
-
-/// Lanes of a block.
-pub const EIGHT: usize = 8;
-
-/// Eight numbers in one vector register.
-#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-#[repr(C, align(32))]
-pub struct Lanes8(pub [f32; EIGHT]);
-
-impl Lanes8 {
-    /// Zero in all lanes.
-    pub const ZERO: Self = Self([0.0; EIGHT]);
-
-    /// Sum of the lanes, in a fixed order.
-    #[inline(always)]
-    pub fn sum(self) -> f64 {
-        let [a, b, c, d, e, f, g, h] = self.0;
-        f64::from(((a + b) + (c + d)) + ((e + f) + (g + h)))
-    }
-}
-
-impl Default for Lanes8 {
-    /// Zero. A derived implementation would call that of arrays, which does not end up inside of hot loops.
-    #[inline(always)]
-    fn default() -> Self {
-        Self::ZERO
-    }
-}
-
-/// The arithmetic of blocks: eight lanes of single precision.
-pub trait EightLanes: Arithmetic<Lanes = Lanes8> {
-    /// The same number in all lanes.
-    fn same(self, value: f32) -> Lanes8;
-
-    /// `j - i` of numbers that go round at the ends of their range.
-    fn apart(self, j: i32, i: [i32; EIGHT]) -> Lanes8;
-}
-
-/// A loop over blocks that is compiled once for every instruction path; what is said of [`HotLoop`] holds for
-/// it.
-pub trait BlockLoop {
-    /// Result of the loop.
-    type Output;
-    /// The loop; mark it `#[inline(always)]`.
-    fn run<A: EightLanes>(self, arithmetic: A) -> Self::Output;
-}
-
-struct Wide<L>(L);
-
-impl<L: BlockLoop> HotLoop for Wide<L> {
-    type Output = L::Output;
-
-    #[inline(always)]
-    fn run<A: FourLanes>(self, a: A) -> L::Output {
-        self.0.run(a.eight())
-    }
-}
-
-/// Runs a loop over blocks on the best path of this processor, with vectors of the plane or of space.
-#[inline]
-pub fn run_blocks_on<L: BlockLoop>(plane: bool, hot: L) -> L::Output {
-    if plane { run_wide(InPlane(Wide(hot))) } else { run_wide(Wide(hot)) }
-}
+use super::arithmetic::{Arithmetic, EightLanes, Portable};
+use super::lanes::{EIGHT, Lanes8};
 
 /// An instruction path with eight lanes of single precision.
 #[derive(Clone, Copy)]
@@ -113,8 +47,7 @@ macro_rules! lane_by_lane {
 }
 
 mod portable {
-    use super::super::arithmetic::{Arithmetic, Portable};
-    use super::{EIGHT, Eight, EightLanes, Lanes8};
+    use super::{Arithmetic, EIGHT, Eight, EightLanes, Lanes8, Portable};
 
     impl Arithmetic for Eight<Portable> {
         type Lanes = Lanes8;
@@ -212,8 +145,7 @@ mod v3 {
     use pulp::x86::V3;
     use pulp::{f32x8, i32x8};
 
-    use super::super::arithmetic::Arithmetic;
-    use super::{EIGHT, Eight, EightLanes, Lanes8};
+    use super::{Arithmetic, EIGHT, Eight, EightLanes, Lanes8};
 
     /// AVX2 and FMA.
     impl Arithmetic for Eight<V3> {

@@ -1,4 +1,5 @@
-//! Vectors of four lanes: three components and one more number, so that a row is one aligned load.
+//! Vectors of four lanes: three components and one more number, so that a row is one aligned load. Vectors of
+//! eight lanes of single precision: a number of each particle of a block.
 //!
 //! Hot loops calculate with them by the operations of [`Arithmetic`](super::Arithmetic). The lanes are
 //! written out: a closure would not be compiled for the instruction path of the loop it is used in.
@@ -57,5 +58,33 @@ impl Lanes4 {
     #[inline(always)]
     pub fn dot3(self, o: Self) -> f64 {
         self.0[0] * o.0[0] + self.0[1] * o.0[1] + self.0[2] * o.0[2]
+    }
+}
+
+/// Lanes of a block.
+pub const EIGHT: usize = 8;
+
+/// Eight numbers in one vector register.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C, align(32))]
+pub struct Lanes8(pub [f32; EIGHT]);
+
+impl Lanes8 {
+    /// Zero in all lanes.
+    pub const ZERO: Self = Self([0.0; EIGHT]);
+
+    /// Sum of the lanes, in a fixed order.
+    #[inline(always)]
+    pub fn sum(self) -> f64 {
+        let [a, b, c, d, e, f, g, h] = self.0;
+        f64::from(((a + b) + (c + d)) + ((e + f) + (g + h)))
+    }
+}
+
+impl Default for Lanes8 {
+    /// Zero. A derived implementation would call that of arrays, which does not end up inside of hot loops.
+    #[inline(always)]
+    fn default() -> Self {
+        Self::ZERO
     }
 }

@@ -1,9 +1,11 @@
 //! Parallel loops with the same result on any number of threads, and the instruction path of the hot loops.
 
 mod arithmetic;
+mod block_loop;
 mod blocks;
 mod dimension;
 mod eight;
+mod four;
 mod lanes;
 mod largest;
 mod number;
@@ -13,14 +15,14 @@ mod picked;
 mod plane;
 mod vector;
 
-pub use arithmetic::{Arithmetic, FourLanes};
+pub use arithmetic::{Arithmetic, EightLanes, FourLanes};
+pub use block_loop::{BlockLoop, run_blocks_on};
 pub use blocks::{
     BLOCK, BlockSum, Split, block_count, for_each_block, for_each_block_in_tasks, for_each_heavy_block,
     sum_over_blocks,
 };
 pub use dimension::{PlaneOrSpace, run_hot_in};
-pub use eight::{BlockLoop, EIGHT, EightLanes, Lanes8, run_blocks_on};
-pub use lanes::Lanes4;
+pub use lanes::{EIGHT, Lanes4, Lanes8};
 pub use largest::Largest;
 pub use number::Number;
 pub use own::{

@@ -1,8 +1,7 @@
 //! The arithmetic of a plane: the same instructions, and vectors without a third component.
 
-use super::arithmetic::{Arithmetic, FourLanes};
-use super::eight::{EIGHT, EightLanes, Lanes8};
-use super::lanes::Lanes4;
+use super::arithmetic::{Arithmetic, EightLanes, FourLanes};
+use super::lanes::{EIGHT, Lanes4, Lanes8};
 use super::path::{HotLoop, run_hot};
 
 /// An instruction path whose vectors lie in the plane of x and y.

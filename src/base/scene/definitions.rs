@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use super::Problem;
 use super::decode::{decode, expression_problem};
-use super::expression::{constant, words};
-use super::symbols::{Symbols, fault_of_name};
+use super::expression::{constant, is_reserved, words};
+use super::symbols::Symbols;
 use super::table::Table;
 use super::tree::{Node, NodeKind};
 
@@ -133,4 +133,20 @@ fn cycle(open: &[&Entry<'_>], parameters: &[Entry<'_>]) -> Problem {
     names.push(names[0]);
     let message = format!("parameter `{}` depends on itself: {}", names[0], names.join(" -> "));
     Problem::at_span(chain[0].2.span.clone(), message).help("give one of them as a number")
+}
+
+/// Problem of a name that a scene defines: the message and the correction.
+fn fault_of_name(name: &str) -> Option<(String, String)> {
+    let fits = |c: char| c.is_alphanumeric() || c == '_';
+    if is_reserved(name) {
+        let message = format!("`{name}` is already a variable, constant or function of expressions");
+        return Some((message, format!("choose another name, such as `{name}_0`")));
+    }
+    let starts = name.chars().next().is_some_and(|c| c.is_alphabetic() || c == '_');
+    if starts && name.chars().all(fits) && name.len() <= 100 {
+        return None;
+    }
+    let help =
+        "names consist of letters, digits and `_`, do not start with a digit and have at most 100 bytes";
+    Some(("the name cannot stand in an expression".to_owned(), help.to_owned()))
 }

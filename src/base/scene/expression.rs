@@ -14,8 +14,8 @@ use serde::de::{Error, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use self::compile::{MAX_STACK, Op, Program};
-use super::decode::text_error;
 use super::symbols::Symbols;
+use super::text_fault::TextFault;
 
 pub(super) use self::compile::{constant, words};
 pub(super) use self::functions::is_reserved;
@@ -111,6 +111,14 @@ pub struct ExpressionError {
     pub help: String,
 }
 
+impl ExpressionError {
+    /// The error as a message of serde that carries its place.
+    pub(super) fn as_text_fault(&self) -> String {
+        let (bytes, message) = (self.start..self.end, self.to_string());
+        TextFault { bytes, message: &message, help: &self.help }.to_string()
+    }
+}
+
 impl FromStr for Expression {
     type Err = ExpressionError;
 
@@ -136,8 +144,7 @@ impl Visitor<'_> for TextOrNumber {
     }
 
     fn visit_str<E: Error>(self, text: &str) -> Result<Expression, E> {
-        Expression::with_symbols(text, &Symbols::current())
-            .map_err(|error| E::custom(text_error(error.start, error.end, &error.to_string(), &error.help)))
+        Expression::with_symbols(text, &Symbols::current()).map_err(|error| E::custom(error.as_text_fault()))
     }
 
     fn visit_f64<E: Error>(self, value: f64) -> Result<Expression, E> {

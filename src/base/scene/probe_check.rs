@@ -1,6 +1,6 @@
 //! Errors of the probes of a scene that are found before anything is built.
 
-use super::check::{in_plane, positive_time, twice, unknown_body, usable_name};
+use super::requirements::{in_plane, positive_time, twice, unknown_body, usable_name};
 use super::{Probe, Problem, Quantity, Scene, Take};
 
 /// Places on a line, at most.

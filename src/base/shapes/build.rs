@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use super::boolean::{DifferenceRegion, Intersection, Union};
+use super::boolean::{Intersection, Union};
 use super::check::{Checked, ShapeCheck};
+use super::difference::DifferenceRegion;
 use super::error::{FillError, FillErrorKind};
 use super::region::Region;
 use super::shape::Shape;

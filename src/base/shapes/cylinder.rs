@@ -4,9 +4,9 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::concentric::Rings;
 use super::moments::Moments;
 use super::region::{Aabb, Region, capped};
+use super::rings::Rings;
 use super::surface::{Facing, Surface, SurfacePoint, behind_all, circle};
 use crate::linalg::Sym3;
 

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use thiserror::Error;
 
-use super::mesh::MeshFault;
+use super::mesh_fault::MeshFault;
 use crate::notation::{digits, number};
 
 /// Why a shape cannot be filled with particles or used as a selection.

@@ -10,6 +10,7 @@ use super::error::{FillError, FillErrorKind};
 use super::lattice::Lattice;
 use super::region::Region;
 use super::shape::Shape;
+use super::site::{Content, Site};
 use super::surface::Surface;
 use super::tiling::Tiling;
 use super::transform::turned;
@@ -18,15 +19,6 @@ use crate::space::Dimension;
 
 /// Steps of relaxation after which particles hardly move any more.
 const MAX_ITERATIONS: u32 = 1000;
-
-/// Where a particle is, and how much of the shape it takes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Site {
-    /// Position \[m\]; z is 0 in two dimensions.
-    pub position: DVec3,
-    /// Volume \[m³\]; in two dimensions area \[m²\], the volume of a slice 1 m thick.
-    pub volume: f64,
-}
 
 /// Options for filling a shape.
 #[derive(Clone, Copy, Debug)]
@@ -44,17 +36,6 @@ pub struct Filling<'a> {
     /// Whether the shape is the wall of a flow: where a box is cut out of it, cells end at the cavity, and
     /// volumes are those of cells.
     pub is_wall: bool,
-}
-
-/// A region that gets particles.
-#[derive(Clone, Copy)]
-pub(super) struct Content<'a> {
-    pub region: &'a dyn Region,
-    /// Volume of all particles, m3.
-    pub volume: f64,
-    pub spacing: f64,
-    /// Number of axes of the scene.
-    pub axes: usize,
 }
 
 /// The particles that fill `shape`, in the order of a Morton curve.

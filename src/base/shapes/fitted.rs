@@ -5,8 +5,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::cells::Packing;
-use super::fill::{Content, Site};
 use super::region::{Aabb, Region};
+use super::site::{Content, Site};
 use super::tiling::Tiling;
 use super::voronoi;
 

@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use super::boolean::DifferenceRegion;
+use super::difference::DifferenceRegion;
 use super::region::Region;
 use super::shape::Shape;
 
@@ -19,52 +19,45 @@ const SHARP: f64 = -0.9;
 /// Step away from a face that is seen as on its other side, over the extent of the hole.
 const BESIDE: f64 = 1e-6;
 
-/// Distance of a `point` from what is left of the whole, if the nearest face is an opening; `of_whole` and
-/// `of_hole` are its distances from the whole and from the hole \[m\].
-pub(super) fn through<R: Region + ?Sized>(
-    cut: &DifferenceRegion<R>,
-    point: DVec3,
-    of_whole: f64,
-    of_hole: f64,
-) -> Option<f64> {
-    let extent = cut.hole.bounds().extent().max_element();
-    if (of_whole - of_hole).abs() > COMMON * extent {
-        return None;
+impl<R: Region + ?Sized> DifferenceRegion<R> {
+    /// Distance of a `point` from what is left of the whole, if the nearest face is an opening; `of_whole` and
+    /// `of_hole` are its distances from the whole and from the hole \[m\].
+    pub(super) fn through_opening(&self, point: DVec3, of_whole: f64, of_hole: f64) -> Option<f64> {
+        let extent = self.hole.bounds().extent().max_element();
+        if (of_whole - of_hole).abs() > COMMON * extent {
+            return None;
+        }
+        let out = normal(|x| self.whole.distance(x), point, BESIDE * extent, self.axes);
+        let (foot, depth) = (point - of_whole * out, of_whole.abs());
+        let in_hole = |x: DVec3| -self.hole.distance(x);
+        let outside = |x: DVec3| self.whole.clearance(x);
+        let is_open =
+            in_hole(foot - BESIDE * extent * out) > 0.0 && outside(foot + BESIDE * extent * out) > 0.0;
+        if !is_open {
+            return None;
+        }
+        let reach = 0.5 * extent;
+        let [of_sides, beyond] = if of_whole < 0.0 {
+            [sideways(in_hole, point, -out, depth, reach), sideways(outside, foot, out, 0.0, reach)]
+        } else {
+            [sideways(outside, point, out, depth, reach), sideways(in_hole, foot, -out, 0.0, reach)]
+        };
+        Some(of_sides.min(depth.hypot(beyond)))
     }
-    let out = normal(|x| cut.whole.distance(x), point, BESIDE * extent, cut.axes);
-    let (foot, depth) = (point - of_whole * out, of_whole.abs());
-    let in_hole = |x: DVec3| -cut.hole.distance(x);
-    let outside = |x: DVec3| cut.whole.clearance(x);
-    let is_open = in_hole(foot - BESIDE * extent * out) > 0.0 && outside(foot + BESIDE * extent * out) > 0.0;
-    if !is_open {
-        return None;
-    }
-    let reach = 0.5 * extent;
-    let [of_sides, beyond] = if of_whole < 0.0 {
-        [sideways(in_hole, point, -out, depth, reach), sideways(outside, foot, out, 0.0, reach)]
-    } else {
-        [sideways(outside, point, out, depth, reach), sideways(in_hole, foot, -out, 0.0, reach)]
-    };
-    Some(of_sides.min(depth.hypot(beyond)))
-}
 
-/// Distance of a `point` outside of the whole by `of_whole` and inside of the hole by `in_hole` \[m\], where
-/// the nearest is the edge between the two faces; none where it is one of the faces.
-pub(super) fn from_edge<R: Region + ?Sized>(
-    cut: &DifferenceRegion<R>,
-    point: DVec3,
-    of_whole: f64,
-    in_hole: f64,
-) -> Option<f64> {
-    let step = BESIDE * cut.hole.bounds().extent().max_element();
-    let faces = [
-        normal(|x| cut.whole.distance(x), point, step, cut.axes),
-        normal(|x| -cut.hole.distance(x), point, step, cut.axes),
-    ];
-    let cos = faces[0].dot(faces[1]);
-    let is_edge = cos > SHARP && in_hole > of_whole * cos && of_whole > in_hole * cos && cos < 1.0;
-    let square = of_whole * of_whole + in_hole * in_hole - 2.0 * of_whole * in_hole * cos;
-    is_edge.then(|| (square / (1.0 - cos * cos)).sqrt())
+    /// Distance of a `point` outside of the whole by `of_whole` and inside of the hole by `in_hole` \[m\], where
+    /// the nearest is the edge between the two faces; none where it is one of the faces.
+    pub(super) fn from_edge(&self, point: DVec3, of_whole: f64, in_hole: f64) -> Option<f64> {
+        let step = BESIDE * self.hole.bounds().extent().max_element();
+        let faces = [
+            normal(|x| self.whole.distance(x), point, step, self.axes),
+            normal(|x| -self.hole.distance(x), point, step, self.axes),
+        ];
+        let cos = faces[0].dot(faces[1]);
+        let is_edge = cos > SHARP && in_hole > of_whole * cos && of_whole > in_hole * cos && cos < 1.0;
+        let square = of_whole * of_whole + in_hole * in_hole - 2.0 * of_whole * in_hole * cos;
+        is_edge.then(|| (square / (1.0 - cos * cos)).sqrt())
+    }
 }
 
 /// Direction in which a distance grows.

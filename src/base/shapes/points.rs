@@ -6,7 +6,7 @@ use std::path::Path;
 use glam::DVec3;
 
 use super::error::{FillError, FillErrorKind};
-use super::fill::Site;
+use super::site::Site;
 use crate::files;
 use crate::notation::{number, place};
 use crate::space::Dimension;

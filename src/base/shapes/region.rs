@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::concentric::Rings;
+use super::rings::Rings;
 
 /// A box along the axes, given by its corners \[m\].
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,8 +4,8 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use super::fill::{Content, Site};
 use super::region::Region;
+use super::site::{Content, Site};
 use super::tiling::{CellBox, Tiling};
 use super::voronoi::{self, CellMoments};
 

@@ -4,9 +4,9 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::concentric::Rings;
 use super::moments::Moments;
 use super::region::{Aabb, Region};
+use super::rings::Rings;
 use super::surface::{Surface, SurfacePoint, closest_between};
 use crate::linalg::Sym3;
 

@@ -2,9 +2,9 @@
 
 use glam::{DQuat, DVec3};
 
-use super::concentric::Rings;
 use super::moments::Moments;
 use super::region::{Aabb, Region};
+use super::rings::Rings;
 use super::surface::{Surface, SurfacePoint};
 
 /// A region moved by `by`.

@@ -2,7 +2,7 @@
 
 use serde::de::{Deserialize, DeserializeSeed, IntoDeserializer, MapAccess, SeqAccess};
 
-use super::Context;
+use super::context::Context;
 use super::error::Error;
 use super::value::{NodeValue, key};
 use crate::scene::Problem;

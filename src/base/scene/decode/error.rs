@@ -4,8 +4,9 @@ use std::fmt;
 
 use serde::de::{self, Expected, Unexpected};
 
-use super::Context;
+use super::context::Context;
 use crate::scene::names::unknown;
+use crate::scene::text_fault::TextFault;
 use crate::scene::tree::{Node, NodeKind};
 use crate::scene::{ExpressionError, Problem};
 
@@ -92,25 +93,16 @@ fn whole_or_head(node: &Node) -> std::ops::Range<usize> {
 
 /// A fault of an expression, at its place within the text value `node`.
 pub(in crate::scene) fn expression_problem(node: &Node, error: &ExpressionError) -> Problem {
-    located(node, &text_error(error.start, error.end, &error.to_string(), &error.help))
-}
-
-const MARK: char = '\u{1f}';
-
-/// A message about the bytes `start..end` of a text value, for `serde::de::Error::custom`, which can carry
-/// only text.
-pub(in crate::scene) fn text_error(start: usize, end: usize, message: &str, help: &str) -> String {
-    format!("{MARK}{start}{MARK}{end}{MARK}{message}{MARK}{help}")
+    located(node, &error.as_text_fault())
 }
 
 /// The problem of a message, at its place within a text where it has one.
 fn located(node: &Node, message: &str) -> Problem {
-    let parts: Vec<&str> = message.split(MARK).collect();
-    let &["", start, end, message, help] = parts.as_slice() else {
+    let Some(TextFault { bytes, message, help }) = TextFault::read(message) else {
         return Problem::at_span(whole_or_head(node), message);
     };
-    let span = match (&node.kind, start.parse::<usize>(), end.parse::<usize>()) {
-        (NodeKind::Text { content: Some(content), .. }, Ok(start), Ok(end)) => content + start..content + end,
+    let span = match &node.kind {
+        NodeKind::Text { content: Some(content), .. } => content + bytes.start..content + bytes.end,
         _ => node.span.clone(),
     };
     let problem = Problem::at_span(span, message);

@@ -6,8 +6,8 @@ use glam::DVec3;
 
 use super::{Facets, coarse, contour, refine, round};
 use crate::shapes::check::ShapeCheck;
-use crate::shapes::concentric::Rings;
 use crate::shapes::mesh;
+use crate::shapes::rings::Rings;
 use crate::shapes::shape::Shape;
 use crate::shapes::transform::turned;
 use crate::space::Dimension;

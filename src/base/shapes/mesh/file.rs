@@ -4,11 +4,11 @@ use std::path::Path;
 
 use glam::DVec3;
 
-use super::fault::MeshFault;
 use super::solid::MeshSolid;
 use super::{obj, stl};
 use crate::files;
 use crate::shapes::error::FillErrorKind;
+use crate::shapes::mesh_fault::MeshFault;
 
 /// Reads a mesh and multiplies its coordinates by `scale` \[m per unit of the file\].
 ///
@@ -31,16 +31,4 @@ pub(in crate::shapes) fn load(folder: &Path, file: &str, scale: f64) -> Result<M
     let solid = triangles
         .and_then(|triangles| MeshSolid::new(&triangles.into_iter().map(scaled).collect::<Vec<_>>()));
     solid.map_err(|fault| FillErrorKind::Mesh { file: shown, fault })
-}
-
-/// Three numbers of a line; further ones are passed over.
-pub(super) fn point<'a>(words: impl Iterator<Item = &'a str>, line: usize) -> Result<DVec3, MeshFault> {
-    let wrong = |message: String| MeshFault::Line { line, message };
-    let mut point = [0.0; 3];
-    let mut found = 0;
-    for (value, word) in point.iter_mut().zip(words) {
-        *value = word.parse().map_err(|_| wrong(format!("expected a number, found `{word}`")))?;
-        found += 1;
-    }
-    if found == 3 { Ok(point.into()) } else { Err(wrong(format!("expected 3 coordinates, found {found}"))) }
 }

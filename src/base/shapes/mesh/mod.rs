@@ -1,16 +1,16 @@
 //! Closed triangle meshes from STL and OBJ files.
 
 mod closest;
-mod fault;
 mod file;
+mod normals;
 mod obj;
+mod point;
 mod solid;
 mod stl;
 mod topology;
 mod tree;
 mod triangle;
 
-pub use fault::MeshFault;
 pub(super) use file::load;
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::fault::MeshFault;
+use crate::shapes::mesh_fault::MeshFault;
 
 /// The triangles of an OBJ file \[unit of the file\]. Faces of more than three corners are cut into triangles
 /// from their first corner on, which is right for convex ones.
@@ -12,7 +12,7 @@ pub(super) fn read(text: &str) -> Result<Vec<[DVec3; 3]>, MeshFault> {
     for (content, line) in text.lines().zip(1..) {
         let mut words = content.split_whitespace();
         match words.next() {
-            Some("v") => points.push(super::file::point(words, line)?),
+            Some("v") => points.push(super::point::point(words, line)?),
             Some("f") => {
                 let corners = words.map(|word| corner(word, &points, line)).collect::<Result<Vec<_>, _>>()?;
                 if corners.len() < 3 {

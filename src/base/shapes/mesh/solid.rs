@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 
-use super::closest::{Normals, sharp_edges};
-use super::fault::MeshFault;
+use super::normals::{Normals, sharp_edges};
 use super::topology::Triangles;
 use super::tree::Tree;
+use crate::shapes::mesh_fault::MeshFault;
 use crate::shapes::region::{Aabb, Region};
 
 /// Volume and moments of a closed mesh.

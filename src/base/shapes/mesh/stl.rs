@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::fault::MeshFault;
+use crate::shapes::mesh_fault::MeshFault;
 
 /// Header and number of triangles of a binary file, bytes.
 const HEAD: usize = 84;
@@ -41,7 +41,7 @@ fn of_text(text: &str) -> Result<Vec<[DVec3; 3]>, MeshFault> {
     for (content, line) in text.lines().zip(1..) {
         let mut words = content.split_whitespace();
         match words.next() {
-            Some("vertex") => corners.push(super::file::point(words, line)?),
+            Some("vertex") => corners.push(super::point::point(words, line)?),
             Some("endfacet") => {
                 let [a, b, c] = corners[..] else {
                     let message = format!("expected a facet of 3 corners, found {}", corners.len());

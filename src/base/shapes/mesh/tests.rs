@@ -6,11 +6,11 @@ use std::path::Path;
 use glam::{DQuat, DVec3};
 use proptest::prelude::*;
 
-use super::fault::MeshFault;
 use super::solid::MeshSolid;
 use super::{obj, stl};
 use crate::scene::Dimension::{Three, Two};
 use crate::shapes::error::FillErrorKind;
+use crate::shapes::mesh_fault::MeshFault;
 use crate::shapes::region::Region;
 use crate::shapes::surface::Surface;
 use crate::shapes::{Filling, Lattice, Shape, fill};

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
-use super::fault::MeshFault;
 use super::tree::Tree;
 use super::triangle::is_pierced;
+use crate::shapes::mesh_fault::MeshFault;
 use crate::shapes::region::Aabb;
 
 /// Corners that are shared, and triangles of three of them.

@@ -75,7 +75,7 @@ pub enum MeshFault {
 
 impl MeshFault {
     /// The correction.
-    pub(in crate::shapes) fn help(&self) -> &'static str {
+    pub(super) fn help(&self) -> &'static str {
         match self {
             Self::Extension => "export the part as STL (ASCII or binary) or as OBJ",
             Self::NotStl { .. } => "export the part again; a transfer as text destroys binary files",

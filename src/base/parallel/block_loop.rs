@@ -1,0 +1,31 @@
+//! Loops over blocks of particles, in eight lanes of single precision.
+
+use super::arithmetic::{EightLanes, FourLanes};
+use super::path::{HotLoop, run_wide};
+use super::plane::InPlane;
+
+/// A loop over blocks that is compiled once for every instruction path; what is said of [`HotLoop`] holds for
+/// it.
+pub trait BlockLoop {
+    /// Result of the loop.
+    type Output;
+    /// The loop; mark it `#[inline(always)]`.
+    fn run<A: EightLanes>(self, arithmetic: A) -> Self::Output;
+}
+
+struct Wide<L>(L);
+
+impl<L: BlockLoop> HotLoop for Wide<L> {
+    type Output = L::Output;
+
+    #[inline(always)]
+    fn run<A: FourLanes>(self, a: A) -> L::Output {
+        self.0.run(a.eight())
+    }
+}
+
+/// Runs a loop over blocks on the best path of this processor, with vectors of the plane or of space.
+#[inline]
+pub fn run_blocks_on<L: BlockLoop>(plane: bool, hot: L) -> L::Output {
+    if plane { run_wide(InPlane(Wide(hot))) } else { run_wide(Wide(hot)) }
+}
