@@ -60,7 +60,7 @@ struct CheckReport<'a> {
 
 /// Builds the scene, does some steps in memory, and prints the results.
 pub fn execute(arguments: &CheckArguments, registry: &Registry) -> Result<(), CommandFailure> {
-    let (scene, source) = arguments.scene.load()?;
+    let (scene, source) = arguments.scene.load(registry)?;
     let mut sim = assembly::build(&scene, &source, registry)?;
     sim.start().map_err(|error| CommandFailure::Run(error.to_string()))?;
     let bodies = BodyReport::all(&scene, &sim, registry)?;

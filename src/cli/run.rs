@@ -36,7 +36,7 @@ pub fn execute(arguments: RunArguments, registry: &Registry) -> Result<(), Comma
 
 fn prepared(arguments: RunArguments, registry: &Registry) -> Result<Execution, CommandFailure> {
     let RunArguments { scene: file, out, force, .. } = arguments;
-    let (scene, source) = file.load()?;
+    let (scene, source) = file.load(registry)?;
     let folder = out.unwrap_or_else(|| default_folder(file.named()));
     let failed = folder.join(FAILED);
     let existing = if force { Existing::Replace } else { Existing::Refuse };

@@ -4,6 +4,8 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use meshless_engine::assembly::name_problems;
+use meshless_engine::plugin::Registry;
 use meshless_engine::scene::{self, Problem, Scene, SceneError, Source};
 
 /// Largest scene that is read from the standard input, B.
@@ -37,10 +39,11 @@ impl SceneFile {
         if self.path == Path::new("-") { Path::new("stdin.ron") } else { &self.path }
     }
 
-    /// Reads the scene.
-    pub fn load(&self) -> Result<(Scene, Source), SceneError> {
+    /// Reads the scene, whose names the registry knows.
+    pub fn load(&self, registry: &Registry) -> Result<(Scene, Source), SceneError> {
+        let names = |scene: &Scene| name_problems(scene, registry);
         if self.path != Path::new("-") {
-            return scene::load(&self.path, &self.set);
+            return scene::load_checked(&self.path, &self.set, &names);
         }
         let mut text = String::new();
         let read = std::io::stdin().take(LARGEST_INPUT).read_to_string(&mut text);
@@ -50,6 +53,6 @@ impl SceneFile {
                 source.error(vec![Problem::new(format!("the standard input cannot be read: {error}"))])
             );
         }
-        scene::parse_with(source, &self.set)
+        scene::parse_checked(source, &self.set, &names)
     }
 }

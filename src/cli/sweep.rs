@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use meshless_engine::assembly::name_problems;
 use meshless_engine::plugin::Registry;
 use meshless_engine::record::{Existing, OutputOptions};
 use meshless_engine::scene::{self, Scene, Source};
@@ -42,10 +43,11 @@ pub struct SweepArguments {
 /// Runs all cases, one after the other.
 pub fn execute(arguments: &SweepArguments, registry: &Registry) -> Result<(), CommandFailure> {
     let cases = cases::combinations(&arguments.set).map_err(CommandFailure::Usage)?;
+    let names = |scene: &Scene| name_problems(scene, registry);
     // All scenes are read before the first one runs.
     let scenes = cases
         .iter()
-        .map(|case| scene::load(&arguments.path, &case.settings))
+        .map(|case| scene::load_checked(&arguments.path, &case.settings, &names))
         .collect::<Result<Vec<(Scene, Source)>, _>>()?;
     arguments.how.prepare()?;
     let interrupt = Interrupt::listen()?;
@@ -58,7 +60,8 @@ pub fn execute(arguments: &SweepArguments, registry: &Registry) -> Result<(), Co
             complain(&format!("run {} of {}: {}", k + 1, cases.len(), case.label()));
         }
         let options = OutputOptions { folder: folder.join(case.folder()), existing, resume: false };
-        let row = run(case, scene, source, registry, options, &arguments.how)?;
+        let mut execution = Execution::new(scene, source, registry, options)?;
+        let row = run(case, &mut execution, &arguments.how);
         failures += usize::from(row.is_failed());
         rows.push(row);
         if interrupt.asked() {
@@ -78,19 +81,11 @@ pub fn execute(arguments: &SweepArguments, registry: &Registry) -> Result<(), Co
 }
 
 /// One run. A failure is reported in its row, so that the others still run.
-fn run(
-    case: &SweepCase,
-    scene: &Scene,
-    source: &Source,
-    registry: &Registry,
-    options: OutputOptions,
-    how: &How,
-) -> Result<SweepRow, CommandFailure> {
-    let mut execution = Execution::new(scene, source, registry, options)?;
+fn run(case: &SweepCase, execution: &mut Execution, how: &How) -> SweepRow {
     let quiet = How { quiet: true, threads: None, instructions: None, ..*how };
     match execution.carry_out(&quiet) {
         Ok(()) | Err(CommandFailure::Interrupted(_)) => {}
         Err(failure) => failure.report(),
     }
-    Ok(SweepRow::new(case, execution.sim.summary()))
+    SweepRow::new(case, execution.sim.summary())
 }

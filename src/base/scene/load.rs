@@ -15,6 +15,18 @@ use crate::files;
 /// The file cannot be read, an override leads nowhere, or the text is not a valid scene; all that is wrong at
 /// once.
 pub fn load(path: &Path, overrides: &[(String, String)]) -> Result<(Scene, Source), SceneError> {
+    load_checked(path, overrides, &|_| Vec::new())
+}
+
+/// [`load`] with what is wrong with the scene by a `check` of its own, such as one of its names.
+///
+/// # Errors
+/// Those of [`load`] and those that the check finds; all that is wrong at once.
+pub fn load_checked(
+    path: &Path,
+    overrides: &[(String, String)],
+    check_too: &dyn Fn(&Scene) -> Vec<Problem>,
+) -> Result<(Scene, Source), SceneError> {
     let name = path.display().to_string();
     let read = files::read(path, files::LARGEST_TEXT).map_err(|error| {
         let source = Source::new(name.clone(), "");
@@ -32,18 +44,15 @@ pub fn load(path: &Path, overrides: &[(String, String)]) -> Result<(Scene, Sourc
             Problem::new(format!("the scene file is not UTF-8 text: line {line} has an invalid byte"));
         Source::new(name.clone(), "").error(vec![problem])
     })?;
-    parse_with(Source::new(name, text), overrides)
+    parse_checked(Source::new(name, text), overrides, check_too)
 }
 
 /// Reads a scene text, with some of its values replaced as by [`load`].
 ///
 /// # Errors
 /// An override leads nowhere, or the text is not a valid scene; all that is wrong at once.
-pub fn parse_with(mut source: Source, overrides: &[(String, String)]) -> Result<(Scene, Source), SceneError> {
-    for (path, value) in overrides {
-        source = source.with_override(path, value).map_err(|problem| source.error(vec![problem]))?;
-    }
-    parse(source)
+pub fn parse_with(source: Source, overrides: &[(String, String)]) -> Result<(Scene, Source), SceneError> {
+    parse_checked(source, overrides, &|_| Vec::new())
 }
 
 /// Reads a scene text.
@@ -51,11 +60,27 @@ pub fn parse_with(mut source: Source, overrides: &[(String, String)]) -> Result<
 /// # Errors
 /// The text is not a valid scene; all that is wrong at once.
 pub fn parse(source: Source) -> Result<(Scene, Source), SceneError> {
+    parse_with(source, &[])
+}
+
+/// [`parse_with`] with what is wrong with the scene by a `check` of its own, such as one of its names.
+///
+/// # Errors
+/// Those of [`parse_with`] and those that the check finds; all that is wrong at once.
+pub fn parse_checked(
+    mut source: Source,
+    overrides: &[(String, String)],
+    check_too: &dyn Fn(&Scene) -> Vec<Problem>,
+) -> Result<(Scene, Source), SceneError> {
+    for (path, value) in overrides {
+        source = source.with_override(path, value).map_err(|problem| source.error(vec![problem]))?;
+    }
     let root = source.tree().map_err(|problem| source.error(vec![problem]))?;
     let symbols = define(&root, &source.text, source.folder()).map_err(|problems| source.error(problems))?;
     let Decoded { value, mut problems } = decode::<Scene>(&root, &source.text, 0, false, &symbols);
     if let Some(scene) = &value {
         problems.extend(check(scene));
+        problems.extend(check_too(scene));
     }
     problems.sort_by_key(|problem| problem.span(&source).map_or(0, |span| span.start));
     match value {

@@ -46,7 +46,7 @@ pub use domain::{Axis, Domain, Outside};
 pub use edge::Edge;
 pub use expression::{Expression, ExpressionError, expression_names};
 pub use item::Item;
-pub use load::{load, parse, parse_with};
+pub use load::{load, load_checked, parse, parse_checked, parse_with};
 pub use names::{nearest, unknown};
 pub use per_axis::PerAxis;
 pub use precision::Precision;

@@ -3,7 +3,7 @@
 use std::any::Any;
 
 use super::named_fields::with_neighbours;
-use super::names;
+use super::names::name_problems;
 use super::options::BuildOptions;
 use super::overlap;
 use super::placement;
@@ -47,7 +47,7 @@ fn build_in(
     registry: &Registry,
     options: &BuildOptions,
 ) -> Result<Simulation, Vec<Problem>> {
-    let misspelt = names::problems(scene, registry);
+    let misspelt = name_problems(scene, registry);
     if !misspelt.is_empty() {
         return Err(misspelt);
     }

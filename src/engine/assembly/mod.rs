@@ -28,4 +28,5 @@ mod tests;
 
 pub use build::{build, build_with};
 pub use named_fields::fields;
+pub use names::name_problems;
 pub use options::BuildOptions;

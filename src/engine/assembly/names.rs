@@ -4,8 +4,9 @@
 use crate::plugin::{BodyKind, EntryKind, Registry};
 use crate::scene::{BodyDescription, Item, Problem, Scene, unknown};
 
-/// Problems of the names of a scene and their parameters.
-pub(super) fn problems(scene: &Scene, registry: &Registry) -> Vec<Problem> {
+/// What is wrong with the names of a scene and their parameters: the first part of what
+/// [`build`](super::build) finds, for [`load_checked`](crate::scene::load_checked).
+pub fn name_problems(scene: &Scene, registry: &Registry) -> Vec<Problem> {
     let mut found = Vec::new();
     for (kind, item) in items(scene) {
         if let Err(problems) = registry.check(kind, item) {
