@@ -23,6 +23,21 @@ pub struct FourVectors {
     pub length: Lanes4,
 }
 
+impl FourVectors {
+    /// Vectors with the squares of their lengths, above zero.
+    #[inline(always)]
+    pub(crate) fn squared<A: FourLanes>(a: A, vector: Vector<A>) -> Self {
+        let square = vector.length_squared().lanes();
+        Self { vector: components(vector), length: a.larger(square, Lanes4::splat(f64::MIN_POSITIVE)) }
+    }
+}
+
+/// The components of four vectors.
+#[inline(always)]
+pub(crate) fn components<A: FourLanes>(vector: Vector<A>) -> [Lanes4; 3] {
+    [vector.x.lanes(), vector.y.lanes(), vector.z.lanes()]
+}
+
 /// Four neighbours. Lanes without a neighbour, and neighbours beyond the support, have weight, kernel and
 /// volume zero and a length above zero.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]

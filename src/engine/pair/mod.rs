@@ -18,6 +18,7 @@ mod term;
 mod weight_at;
 mod work;
 
+pub(crate) use batch::components;
 pub use batch::{Extras, FourPairs, FourVectors, Neighbor, PairBatch, RowSlots};
 pub(crate) use block::{BlockPairs, CHUNK, EightPairs, TermSums};
 pub(crate) use body_terms::BodyTerms;

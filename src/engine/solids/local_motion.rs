@@ -14,6 +14,9 @@
 
 use glam::{DMat3, DVec3};
 
+use crate::linalg::Sym3;
+use crate::parallel::{FourLanes, HotLoop, Lanes4};
+use crate::symmetry::Ghosts;
 use crate::world::{Mobility, Velocity};
 
 /// Motion of the material points beside a particle, and their response to a force.
@@ -46,5 +49,82 @@ impl LocalMotion {
     pub fn mobility(&self, arm: DVec3) -> DVec3 {
         let own = 1.0 - self.own.dot(arm);
         self.mobility * (own * own)
+    }
+}
+
+/// The fit of the motion of a particle to that of its neighbours, in the configuration of their weights.
+#[derive(Clone, Copy, Debug)]
+pub struct LocalFit {
+    /// M^-1.
+    pub inverse: Sym3,
+    /// `sum_j V_j w_ij x_ij`.
+    pub first_moment: DVec3,
+    /// From the reference configuration to that of the weights, where they differ.
+    pub gradient: Option<DMat3>,
+}
+
+impl LocalFit {
+    /// The motion with this sum of V_j w_ij v_ij (x) x_ij over the neighbours.
+    pub fn motion(&self, sum: DMat3, velocity: Velocity, mobility: Mobility) -> LocalMotion {
+        let (rate, own) = (sum * self.inverse.to_matrix(), self.inverse * self.first_moment);
+        // A point A of the reference configuration lies at F A beside the particle.
+        let (rate, own) = self.gradient.map_or((rate, own), |f| (rate * f, f.transpose() * own));
+        LocalMotion { velocity: velocity.0, rate, mobility: mobility.0, own }
+    }
+
+    /// The matrix B, without the volume, for which the forces `V_j w_ij B x_ij` on the neighbours have the
+    /// effect of a `couple` f (x) A.
+    pub fn corrected(&self, couple: &DMat3) -> DMat3 {
+        let pulled = self.gradient.map_or(*couple, |f| *couple * f.transpose());
+        pulled * self.inverse.to_matrix()
+    }
+}
+
+/// A packed row with a place.
+pub trait HasPlace {
+    /// Place in the configuration of the weights, m, and volume, m3.
+    fn place(&self) -> Lanes4;
+}
+
+/// The sum of V_j w_ij v_ij (x) x_ij over the neighbours of a particle.
+pub struct RateSum<'a, W, P> {
+    /// The particle.
+    pub row: usize,
+    /// Its neighbours, of which some may be ghosts.
+    pub neighbors: &'a [u32],
+    /// Their weights.
+    pub weights: &'a [W],
+    /// All rows, those of ghosts last.
+    pub points: &'a [P],
+    /// The ghosts.
+    pub ghosts: &'a Ghosts,
+    /// Velocities of the particles.
+    pub velocity: &'a [Velocity],
+}
+
+impl<W: Copy + Into<f64>, P: HasPlace> HotLoop for RateSum<'_, W, P> {
+    type Output = DMat3;
+
+    #[inline(always)]
+    fn run<A: FourLanes>(self, a: A) -> DMat3 {
+        let Self { row, neighbors, weights, points, ghosts, velocity } = self;
+        let (own, v) = (points[row].place(), Lanes4::new(velocity[row].0, 0.0));
+        let mut sum = [Lanes4::ZERO; 3];
+        for (&j, &weight) in neighbors.iter().zip(weights) {
+            let j = j as usize;
+            let other = points[j].place();
+            let there = match velocity.get(j) {
+                Some(there) if ghosts.is_empty() => there.0,
+                _ => velocity[ghosts.source(j)].0 * ghosts.mirror(j).unwrap_or(DVec3::ONE),
+            };
+            let v_ij = a.minus(Lanes4::new(there, 0.0), v);
+            let weight: f64 = weight.into();
+            let weighted = a.scale(weight * other.0[3], v_ij);
+            let x_ij = a.minus(other, own);
+            for (axis, sum) in sum.iter_mut().enumerate() {
+                *sum = a.scale_add(x_ij.0[axis], weighted, *sum);
+            }
+        }
+        DMat3::from_cols(sum[0].xyz(), sum[1].xyz(), sum[2].xyz())
     }
 }

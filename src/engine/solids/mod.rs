@@ -45,7 +45,7 @@ pub(crate) use fields::fields;
 pub(crate) use fit::fit;
 pub use folded::{FoldedEnergy, FoldedMemory, FoldedRows, FoldedTerm, FoldedTermOfBodies};
 pub use hessian::{HessianDifference, HessianForm, HessianResidual, HessianStiffness};
-pub use local_motion::LocalMotion;
+pub use local_motion::{HasPlace, LocalFit, LocalMotion, RateSum};
 pub use losses::{Loss, TakenUp};
 pub use pair_control::PairControl;
 pub use pairs::SolidPairs;

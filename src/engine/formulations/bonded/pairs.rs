@@ -8,7 +8,9 @@ use glam::DVec3;
 use super::bonds::Bonds;
 use super::rows::PackedParticle;
 use crate::kernels::Kernel;
-use crate::pair::{Extras, FourVectors, PairBatch, PairReads, PairRows, PairSource, RowSlots, WeightAt};
+use crate::pair::{
+    Extras, FourVectors, PairBatch, PairReads, PairRows, PairSource, RowSlots, WeightAt, components,
+};
 use crate::parallel::{FourLanes, HotLoop, Lanes4, Vector, run_hot_on};
 use crate::scene::Dimension;
 use crate::schedule::{Access, Mode, Step, StepError};
@@ -229,9 +231,9 @@ impl BodyPairs<'_> {
         }
         let [j, k, l, m] = rows;
         room.rows[n] = [j as u32, k as u32, l as u32, m as u32];
-        room.reference[n] = four_vectors(a, then);
+        room.reference[n] = FourVectors::squared(a, then);
         let pairs = &mut room.pairs[n];
-        pairs.current = four_vectors(a, now);
+        pairs.current = FourVectors::squared(a, now);
         pairs.volume_j = volume_j;
         pairs.weight = a.where_below(Lanes4::ZERO, volume_j, weight);
         if let Some(v) = velocity {
@@ -240,7 +242,7 @@ impl BodyPairs<'_> {
                 let signs = &room.mirrors[n];
                 of = [of[0] * signs[0], of[1] * signs[1], of[2] * signs[2], of[3] * signs[3]];
             }
-            pairs.velocity = lanes(Vector::from_rows(a, of) - own.velocity);
+            pairs.velocity = components(Vector::from_rows(a, of) - own.velocity);
         }
         if uniform.is_none() {
             let other = Lanes4([support[j].0, support[k].0, support[l].0, support[m].0]);
@@ -259,16 +261,4 @@ fn put_kernel(kernel: &Kernel, uniform: Option<f64>, room: RowSlots<'_>) {
             pairs.kernel.0[lane] = if pairs.volume_j.0[lane] > 0.0 { value } else { 0.0 };
         }
     }
-}
-
-/// Four vectors, with the squares of their lengths, above zero.
-#[inline(always)]
-fn four_vectors<A: FourLanes>(a: A, vector: Vector<A>) -> FourVectors {
-    let square = vector.length_squared().lanes();
-    FourVectors { vector: lanes(vector), length: a.larger(square, Lanes4::splat(f64::MIN_POSITIVE)) }
-}
-
-#[inline(always)]
-fn lanes<A: FourLanes>(vector: Vector<A>) -> [Lanes4; 3] {
-    [vector.x.lanes(), vector.y.lanes(), vector.z.lanes()]
 }

@@ -8,6 +8,7 @@ use glam::DVec3;
 use crate::parallel::{Lanes4, for_each_block, for_each_own_block};
 use crate::ranks::Halo;
 use crate::schedule::StepError;
+use crate::solids::HasPlace;
 use crate::world::{PhaseView, Position, ReferencePosition, ReferenceVolume};
 
 /// Where a particle is: reference position X with the volume V_0 in the last lane, and displacement u = x -
@@ -35,6 +36,13 @@ impl PackedParticle {
     #[inline(always)]
     pub fn is_present(&self) -> bool {
         self.reference.0[3] > 0.0
+    }
+}
+
+impl HasPlace for PackedParticle {
+    #[inline(always)]
+    fn place(&self) -> Lanes4 {
+        self.reference
     }
 }
 

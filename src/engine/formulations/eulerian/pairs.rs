@@ -6,7 +6,9 @@ use glam::DVec3;
 
 use super::particle::EulerianParticle;
 use super::rows::EulerianRows;
-use crate::pair::{Extras, FourVectors, PairBatch, PairReads, PairRows, PairSource, RowSlots, WeightAt};
+use crate::pair::{
+    Extras, FourVectors, PairBatch, PairReads, PairRows, PairSource, RowSlots, WeightAt, components,
+};
 use crate::parallel::{FourLanes, HotLoop, Lanes4, Vector, run_hot_on};
 use crate::schedule::{Access, Mode, Step, StepError};
 use crate::solids::PACKED_SOLID;
@@ -116,10 +118,10 @@ fn put<A: FourLanes>(a: A, packed: &EulerianRows, four: FourNeighbors, n: usize,
         volume_j.0[lane] = volume.0[lane];
     }
     let pairs = &mut room.pairs[n];
-    pairs.current = four_vectors(a, now);
-    pairs.velocity = lanes(passing);
+    pairs.current = FourVectors::squared(a, now);
+    pairs.velocity = components(passing);
     (pairs.weight, pairs.kernel, pairs.volume_j) = (weight, kernel, volume_j);
-    room.reference[n] = four_vectors(a, then);
+    room.reference[n] = FourVectors::squared(a, then);
     room.rows[n] = four;
     if !room.mirrors.is_empty() {
         for lane in 0..4 {
@@ -127,16 +129,4 @@ fn put<A: FourLanes>(a: A, packed: &EulerianRows, four: FourNeighbors, n: usize,
             room.rows[n][lane] = lists.ghosts.source(four[lane] as usize) as u32;
         }
     }
-}
-
-/// Four vectors, with the squares of their lengths, above zero.
-#[inline(always)]
-fn four_vectors<A: FourLanes>(a: A, vector: Vector<A>) -> FourVectors {
-    let square = vector.length_squared().lanes();
-    FourVectors { vector: lanes(vector), length: a.larger(square, Lanes4::splat(f64::MIN_POSITIVE)) }
-}
-
-#[inline(always)]
-fn lanes<A: FourLanes>(vector: Vector<A>) -> [Lanes4; 3] {
-    [vector.x.lanes(), vector.y.lanes(), vector.z.lanes()]
 }

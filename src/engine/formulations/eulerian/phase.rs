@@ -1,12 +1,28 @@
 //! The interface of the phase to the rest of the engine.
 
-use glam::{DMat3, DVec3};
+use glam::DMat3;
 
+use super::near::NearbyMotion;
+use super::particle::EulerianParticle;
 use super::rows::EulerianRows;
-use crate::linalg::dyad;
-use crate::solids::{LocalMotion, SolidPhase};
+use crate::parallel::{Lanes4, run_hot};
+use crate::solids::{HasPlace, LocalFit, LocalMotion, RateSum, SolidPhase};
 use crate::symmetry::Ghosts;
 use crate::world::{Mobility, Velocity};
+
+impl HasPlace for EulerianParticle {
+    #[inline(always)]
+    fn place(&self) -> Lanes4 {
+        self.place
+    }
+}
+
+impl EulerianRows {
+    fn fit(&self, row: usize) -> LocalFit {
+        let NearbyMotion { inverse_moment, first_moment, .. } = self.near.around[row];
+        LocalFit { inverse: inverse_moment, first_moment, gradient: Some(self.deformation[row]) }
+    }
+}
 
 impl SolidPhase for EulerianRows {
     fn ghosts(&self) -> &Ghosts {
@@ -30,26 +46,10 @@ impl SolidPhase for EulerianRows {
         mobility: Mobility,
         moving: bool,
     ) -> LocalMotion {
-        let around = &self.near.around[row];
-        let mut sum = DMat3::ZERO;
-        if moving {
-            let (ghosts, own) = (&self.lists.ghosts, self.points[row].place);
-            self.neighbors(row, &mut |j, weight| {
-                let signs = ghosts.mirror(j).unwrap_or(DVec3::ONE);
-                let v_ij = velocity[ghosts.source(j)].0 * signs - velocity[row].0;
-                let other = self.points[j].place;
-                let arm = (other.xyz() - own.xyz()) * (weight * other.0[3]);
-                sum += dyad(v_ij, arm);
-            });
-        }
-        // A point A of the reference configuration lies at F A from the particle.
-        let f = self.deformation[row];
-        LocalMotion {
-            velocity: velocity[row].0,
-            rate: sum * around.inverse_moment.to_matrix() * f,
-            mobility: mobility.0,
-            own: f.transpose() * (around.inverse_moment * around.first_moment),
-        }
+        let (neighbors, weights) = self.near.row(self.lists.offsets[row], row);
+        let (points, ghosts) = (&self.points[..], &self.lists.ghosts);
+        let sum = RateSum { row, neighbors, weights, points, ghosts, velocity };
+        self.fit(row).motion(if moving { run_hot(sum) } else { DMat3::ZERO }, velocity[row], mobility)
     }
 
     fn add_couples(&mut self, first: usize, nodes: &[u32], couples: &[DMat3]) {
@@ -57,10 +57,8 @@ impl SolidPhase for EulerianRows {
             let row = first + node as usize;
             let (volume, measure) = (self.points[row].place.0[3], self.stresses[row].traction.0[3]);
             if measure > 0.0 {
-                let pulled = *couple * self.deformation[row].transpose();
-                let corrected = pulled * self.near.around[row].inverse_moment.to_matrix();
                 // On particles of like density the sums of the force take it as a stress of this volume.
-                let stress = corrected * (-volume / (measure * measure));
+                let stress = self.fit(row).corrected(couple) * (-volume / (measure * measure));
                 for (column, add) in
                     self.stresses[row].columns.iter_mut().zip([stress.x_axis, stress.y_axis, stress.z_axis])
                 {

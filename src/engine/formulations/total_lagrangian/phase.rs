@@ -5,9 +5,10 @@ use std::ops::Range;
 use glam::{DMat3, DVec3};
 
 use crate::formulations::bonded::{
-    AffineFrame, BodyKernel, BondedRows, Bonds, Cracks, HessianRows, PackedParticle, fill_ghosts,
+    AffineFrame, BodyKernel, BondedMotion, BondedRows, Bonds, Cracks, HessianRows, PackedParticle,
+    fill_ghosts,
 };
-use crate::parallel::{BLOCK, FourLanes, HotLoop, Lanes4, Picked, for_each_block, own_rows, run_hot};
+use crate::parallel::{BLOCK, own_rows};
 use crate::ranks::Halo;
 use crate::solids::{CorrectedStress, LocalMotion, SolidPhase};
 use crate::symmetry::Ghosts;
@@ -103,30 +104,15 @@ impl SolidPhase for PackedRows {
         mobility: Mobility,
         moving: bool,
     ) -> LocalMotion {
-        let inverse = &self.bonds.inverse_moment[row];
-        let sum = if moving { run_hot(RateSum { packed: self, row, velocity }) } else { DMat3::ZERO };
-        LocalMotion {
-            velocity: velocity[row].0,
-            rate: sum * inverse.to_matrix(),
-            mobility: mobility.0,
-            own: *inverse * self.bonds.first_moment[row],
-        }
+        let Self { bonds, sites, ghosts, .. } = self;
+        let motion = BondedMotion { bonds, sites, ghosts, gradient: None };
+        motion.local_motion(row, velocity, mobility, moving)
     }
 
     fn add_couples(&mut self, first: usize, nodes: &[u32], couples: &[DMat3]) {
-        let Self { bonds, sites, stresses, self_force, .. } = self;
-        let picked = Picked::new(nodes, &mut stresses[first..]);
-        let rows = (picked, Picked::new(nodes, &mut self_force[first..]), couples);
-        type Rows<'a> = (Picked<'a, CorrectedStress>, Picked<'a, DVec3>, &'a [DMat3]);
-        for_each_block(rows, &mut Vec::new(), &|_, (mut stresses, mut self_force, couples): Rows<'_>| {
-            for (k, couple) in couples.iter().enumerate().filter(|(_, couple)| **couple != DMat3::ZERO) {
-                let row = first + self_force.number(k);
-                let site = &sites[row].reference;
-                let stress = *couple * bonds.inverse_moment[row].to_matrix() * (-1.0 / site.0[3]);
-                stresses.row(k).add(&stress, site.xyz());
-                *self_force.row(k) += stress * bonds.first_moment[row];
-            }
-        });
+        let Self { bonds, sites, ghosts, stresses, self_force, .. } = self;
+        let motion = BondedMotion { bonds, sites, ghosts, gradient: None };
+        motion.add_couples(first, nodes, couples, stresses, self_force);
     }
 
     fn keeps_reference(&self) -> bool {
@@ -135,39 +121,5 @@ impl SolidPhase for PackedRows {
 
     fn renew_ghosts(&mut self) {
         self.fill_ghost_stresses();
-    }
-}
-
-/// The sum of V_j w_ij v_ij (x) X_ij over the neighbours of a particle.
-struct RateSum<'a> {
-    packed: &'a PackedRows,
-    row: usize,
-    velocity: &'a [Velocity],
-}
-
-impl HotLoop for RateSum<'_> {
-    type Output = DMat3;
-
-    #[inline(always)]
-    fn run<A: FourLanes>(self, a: A) -> DMat3 {
-        let Self { packed, row, velocity } = self;
-        let (bonds, sites, ghosts) = (&packed.bonds, &packed.sites, &packed.ghosts);
-        let (own, v) = (sites[row].reference, Lanes4::new(velocity[row].0, 0.0));
-        let mut sum = [Lanes4::ZERO; 3];
-        for k in bonds.offsets[row] as usize..bonds.offsets[row + 1] as usize {
-            let j = bonds.neighbors[k] as usize;
-            let other = sites[j].reference;
-            let there = match velocity.get(j) {
-                Some(there) if ghosts.is_empty() => there.0,
-                _ => velocity[ghosts.source(j)].0 * ghosts.mirror(j).unwrap_or(DVec3::ONE),
-            };
-            let v_ij = a.minus(Lanes4::new(there, 0.0), v);
-            let weighted = a.scale(f64::from(bonds.weights[k]) * other.0[3], v_ij);
-            let x_ij = a.minus(other, own);
-            for (axis, sum) in sum.iter_mut().enumerate() {
-                *sum = a.scale_add(x_ij.0[axis], weighted, *sum);
-            }
-        }
-        DMat3::from_cols(sum[0].xyz(), sum[1].xyz(), sum[2].xyz())
     }
 }

@@ -5,10 +5,9 @@ use glam::{DMat3, DVec3};
 use super::control::Control;
 use super::lists::ReferenceLists;
 use crate::formulations::bonded::{
-    AffineFrame, BodyKernel, BondedRows, Bonds, Cracks, Ellipsoid, HeldParticles, HessianRows,
+    AffineFrame, BodyKernel, BondedMotion, BondedRows, Bonds, Cracks, Ellipsoid, HeldParticles, HessianRows,
     PackedParticle, bodies_of, fill_ghosts, frame_of,
 };
-use crate::linalg::dyad;
 use crate::parallel::share_rows_of;
 use crate::solids::{CorrectedStress, LocalMotion, SolidPhase};
 use crate::symmetry::{Ghosts, Repeat};
@@ -118,37 +117,16 @@ impl SolidPhase for UpdatedRows {
         mobility: Mobility,
         moving: bool,
     ) -> LocalMotion {
-        let inverse = &self.bonds.inverse_moment[row];
-        let mut sum = DMat3::ZERO;
-        if moving {
-            for (j, weight) in self.bonds.row(row) {
-                let signs = self.ghosts.mirror(j).unwrap_or(DVec3::ONE);
-                let v_ij = velocity[self.ghosts.source(j)].0 * signs - velocity[row].0;
-                let (own, other) = (&self.sites[row].reference, &self.sites[j].reference);
-                let r_ij = (other.xyz() - own.xyz()) * (f64::from(weight) * other.0[3]);
-                sum += dyad(v_ij, r_ij);
-            }
-        }
-        // A point A of the original configuration lies at F_r A in the reference.
-        let f_r = self.gradient[row];
-        LocalMotion {
-            velocity: velocity[row].0,
-            rate: sum * inverse.to_matrix() * f_r,
-            mobility: mobility.0,
-            own: f_r.transpose() * (*inverse * self.bonds.first_moment[row]),
-        }
+        let Self { bonds, sites, ghosts, gradient, .. } = self;
+        let motion = BondedMotion { bonds, sites, ghosts, gradient: Some(gradient) };
+        motion.local_motion(row, velocity, mobility, moving)
     }
 
     fn add_couples(&mut self, first: usize, nodes: &[u32], couples: &[DMat3]) {
         self.has_force = false;
-        for (&node, couple) in nodes.iter().zip(couples).filter(|(_, couple)| **couple != DMat3::ZERO) {
-            let row = first + node as usize;
-            let site = &self.sites[row].reference;
-            let pulled = *couple * self.gradient[row].transpose();
-            let stress = pulled * self.bonds.inverse_moment[row].to_matrix() * (-1.0 / site.0[3]);
-            self.stresses[row].add(&stress, site.xyz());
-            self.self_force[row] += stress * self.bonds.first_moment[row];
-        }
+        let Self { bonds, sites, ghosts, gradient, stresses, self_force, .. } = self;
+        let motion = BondedMotion { bonds, sites, ghosts, gradient: Some(gradient) };
+        motion.add_couples(first, nodes, couples, stresses, self_force);
     }
 
     fn renew_ghosts(&mut self) {
