@@ -20,7 +20,7 @@ use crate::parallel::{for_each_block, own_rows};
 use crate::plugin::SimBuilder;
 use crate::ranks::has_several;
 use crate::schedule::{Run, Step, StepError};
-use crate::world::{Force, ReferencePosition};
+use crate::world::Force;
 
 crate::column! {
     /// Shortfall of the range of the repulsion of boundaries for a fluid particle.
@@ -77,30 +77,29 @@ impl Repulsion {
     fn measure(&mut self, cloud: &FlowCloud, out: &mut [Repelled], step: &Step<'_>) -> Result<(), StepError> {
         let (range, close) = (self.range, &self.close[..]);
         for surface in &mut self.surfaces {
-            let view = step.world.phase(surface.group.phase);
-            let reference = view.read_near::<ReferencePosition>()?;
-            let reference = &reference[surface.group.rows.clone()];
-            let motion = surface.look(cloud, reference);
-            let surface = &*surface;
-            let rows = (&mut out[..], close);
-            for_each_block(rows, &mut Vec::new(), &|_, (out, close): (&mut [Repelled], &[u32])| {
-                for (out, &i) in out.iter_mut().zip(close) {
-                    let i = i as usize;
-                    if motion.is_some_and(|motion| surface.is_beyond(range, cloud, i, &motion)) {
-                        continue;
+            surface.look(cloud, step, |seen| {
+                let (surface, rows) = (seen.shape, (&mut out[..], close));
+                for_each_block(rows, &mut Vec::new(), &|_, (out, close): (&mut [Repelled], &[u32])| {
+                    for (out, &i) in out.iter_mut().zip(close) {
+                        let i = i as usize;
+                        if seen.is_beyond(range, cloud, i) {
+                            continue;
+                        }
+                        let found = seen.place(cloud, i);
+                        let Some(place) = found.filter(|place| place.distance < out.distance) else {
+                            continue;
+                        };
+                        let fluid = cloud.groups.iter().position(|group| group.cloud.contains(&i));
+                        let stiffness = fluid.map_or(0.0, |fluid| surface.stiffness[fluid]);
+                        out.distance = place.distance;
+                        out.boundary = surface.group.cloud.start;
+                        if place.distance < range {
+                            out.force = stiffness * surface.direction(cloud, &place);
+                            out.shares = place.shares;
+                        }
                     }
-                    let found = surface.place(cloud, i, reference, motion.as_ref());
-                    let Some(place) = found.filter(|place| place.distance < out.distance) else { continue };
-                    let fluid = cloud.groups.iter().position(|group| group.cloud.contains(&i));
-                    let stiffness = fluid.map_or(0.0, |fluid| surface.stiffness[fluid]);
-                    out.distance = place.distance;
-                    out.boundary = surface.group.cloud.start;
-                    if place.distance < range {
-                        out.force = stiffness * surface.direction(cloud, &place);
-                        out.shares = place.shares;
-                    }
-                }
-            });
+                });
+            })?;
         }
         Ok(())
     }

@@ -16,6 +16,7 @@ use crate::formulations::fluid::lanes::FlowParticle;
 use crate::linalg::dyad;
 use crate::parallel::sum_over_blocks;
 use crate::plugin::SimBuilder;
+use crate::schedule::{Step, StepError};
 use crate::shapes::Region;
 use crate::world::ReferencePosition;
 
@@ -60,6 +61,44 @@ pub struct PlaceInBody {
     pub shares: Shares,
 }
 
+/// A boundary where it is now.
+pub struct BoundaryView<'a> {
+    pub shape: &'a BoundaryShape,
+    /// Places of its particles in the scene.
+    reference: &'a [ReferencePosition],
+    /// The motion of the body, if it has one.
+    motion: Option<BodyMotion>,
+}
+
+/// The face of a boundary before a fluid particle.
+pub struct FaceBefore {
+    pub place: PlaceInBody,
+    /// What it counts for: one on the face, zero where it is none.
+    pub nearness: f64,
+    /// From the face to the particle.
+    pub normal: DVec3,
+}
+
+impl BoundaryView<'_> {
+    /// Whether particle `i` is known to be farther than `range`, m.
+    pub fn is_beyond(&self, range: f64, cloud: &FlowCloud, i: usize) -> bool {
+        self.motion.is_some_and(|motion| self.shape.is_beyond(range, cloud, i, &motion))
+    }
+
+    /// Where particle `i` is; none if it is beside no particle of the body.
+    pub fn place(&self, cloud: &FlowCloud, i: usize) -> Option<PlaceInBody> {
+        self.shape.place(cloud, i, self.reference, self.motion.as_ref())
+    }
+
+    /// The face before particle `i`.
+    pub fn face(&self, cloud: &FlowCloud, i: usize) -> Option<FaceBefore> {
+        let place = self.place(cloud, i)?;
+        let nearness = self.shape.nearness(&place)?;
+        let normal = self.shape.direction(cloud, &place).normalize_or_zero();
+        Some(FaceBefore { place, nearness, normal })
+    }
+}
+
 impl BoundaryShape {
     /// That of a body whose shape is known, with a stiffness of the repulsion of each fluid, N/m; its nearest
     /// particle is within `reach`, m, of any particle beside it.
@@ -78,10 +117,23 @@ impl BoundaryShape {
         })
     }
 
+    /// Looks at the boundary where it is now.
+    pub fn look<T>(
+        &mut self,
+        cloud: &FlowCloud,
+        step: &Step<'_>,
+        see: impl FnOnce(&BoundaryView<'_>) -> T,
+    ) -> Result<T, StepError> {
+        let view = step.world.phase(self.group.phase);
+        let reference = &view.read_near::<ReferencePosition>()?[self.group.rows.clone()];
+        let motion = self.motion(cloud, reference);
+        Ok(see(&BoundaryView { shape: self, reference, motion }))
+    }
+
     /// The motion of the body, if it is one map, and whether it has lost particles; both are known already of
     /// a body that has not moved since the last step, in which it was looked at. `reference` are the places
     /// of its particles in the scene.
-    pub fn look(&mut self, cloud: &FlowCloud, reference: &[ReferencePosition]) -> Option<BodyMotion> {
+    fn motion(&mut self, cloud: &FlowCloud, reference: &[ReferencePosition]) -> Option<BodyMotion> {
         let is_own = |group: &Group| group.cloud.start == self.group.cloud.start;
         let is_still = cloud.groups.iter().zip(&cloud.is_still).any(|(group, still)| *still && is_own(group));
         if let Some(motion) = self.kept.filter(|_| is_still) {
@@ -100,14 +152,14 @@ impl BoundaryShape {
     }
 
     /// Whether particle `i` is farther than `range`, m, from a body with that motion.
-    pub fn is_beyond(&self, range: f64, cloud: &FlowCloud, i: usize, motion: &BodyMotion) -> bool {
+    fn is_beyond(&self, range: f64, cloud: &FlowCloud, i: usize, motion: &BodyMotion) -> bool {
         let place = motion.home(cloud.records[i].position());
         motion.keeps(cloud.pairs.periodic()) && self.distance(cloud, place) >= range
     }
 
     /// Where particle `i` is, none if it is beside no particle of the body; `reference` are the places of its
     /// particles in the scene, `motion` is that of the whole body, if it has one.
-    pub fn place(
+    fn place(
         &self,
         cloud: &FlowCloud,
         i: usize,

@@ -5,11 +5,10 @@ use std::ops::Range;
 use glam::DVec3;
 
 use crate::formulations::fluid::cloud::{FlowCloud, Front, Group, part};
-use crate::formulations::fluid::walls::surface_distance::BoundaryShape;
+use crate::formulations::fluid::walls::surface_distance::{BoundaryShape, BoundaryView, FaceBefore};
 use crate::plugin::SimBuilder;
 use crate::scene::{Probe, Quantity};
 use crate::schedule::{Step, StepError};
-use crate::world::ReferencePosition;
 
 /// The shapes of the walls.
 pub struct WallShapes {
@@ -73,40 +72,40 @@ impl WallShapes {
         }
         let rows = self.rows();
         for shape in &mut self.shapes {
-            let view = step.world.phase(shape.group.phase);
-            let reference = &view.read_near::<ReferencePosition>()?[shape.group.rows.clone()];
-            let motion = shape.look(cloud, reference);
-            let shape = &*shape;
-            for i in (0..cloud.fluid).filter(|&i| cloud.is_close[i] != 0) {
-                let walls = part(cloud.near_row(i), &rows);
-                let own = part(walls, &shape.group.cloud);
-                let is_other = |w: &u32| {
-                    !shape.group.cloud.contains(&(*w as usize)) && cloud.value_between(i, *w as usize) > 0.0
-                };
-                if own.is_empty() || !walls.iter().any(is_other) {
-                    continue;
-                }
-                if motion.is_some_and(|motion| shape.is_beyond(shape.before(), cloud, i, &motion)) {
-                    continue;
-                }
-                let place = shape.place(cloud, i, reference, motion.as_ref());
-                let near = place.and_then(|place| Some((shape.nearness(&place)?, place)));
-                let Some((nearness, place)) = near else { continue };
-                let share =
-                    |j: &u32| place.shares.of(cloud, i, *j as usize) * cloud.records[*j as usize].velocity();
-                out.push(Front {
-                    i,
-                    boundary: shape.group.cloud.start,
-                    normal: shape.direction(cloud, &place).normalize_or_zero(),
-                    weight: nearness,
-                    distance: place.distance,
-                    spacing: shape.spacing,
-                    velocity: own.iter().map(share).sum::<DVec3>(),
-                    shares: place.shares,
-                    force: [DVec3::ZERO; 2],
-                });
-            }
+            shape.look(cloud, step, |seen| find_before(seen, cloud, &rows, out))?;
         }
         Ok(())
+    }
+}
+
+/// Writes down the faces of a wall before fluid particles that have another one of the walls of these `rows`
+/// within the support.
+fn find_before(seen: &BoundaryView<'_>, cloud: &FlowCloud, rows: &Range<usize>, out: &mut Vec<Front>) {
+    let shape = seen.shape;
+    for i in (0..cloud.fluid).filter(|&i| cloud.is_close[i] != 0) {
+        let walls = part(cloud.near_row(i), rows);
+        let own = part(walls, &shape.group.cloud);
+        let is_other = |w: &u32| {
+            !shape.group.cloud.contains(&(*w as usize)) && cloud.value_between(i, *w as usize) > 0.0
+        };
+        if own.is_empty() || !walls.iter().any(is_other) {
+            continue;
+        }
+        if seen.is_beyond(shape.before(), cloud, i) {
+            continue;
+        }
+        let Some(FaceBefore { place, nearness, normal }) = seen.face(cloud, i) else { continue };
+        let share = |j: &u32| place.shares.of(cloud, i, *j as usize) * cloud.records[*j as usize].velocity();
+        out.push(Front {
+            i,
+            boundary: shape.group.cloud.start,
+            normal,
+            weight: nearness,
+            distance: place.distance,
+            spacing: shape.spacing,
+            velocity: own.iter().map(share).sum::<DVec3>(),
+            shares: place.shares,
+            force: [DVec3::ZERO; 2],
+        });
     }
 }

@@ -6,7 +6,7 @@ use super::edges::add_edges;
 use super::faces::FacesBefore;
 use super::forces::WITHIN;
 use crate::formulations::fluid::cloud::{FlowCloud, Group, WallEnd};
-use crate::formulations::fluid::walls::surface_distance::BoundaryShape;
+use crate::formulations::fluid::walls::surface_distance::{BoundaryShape, BoundaryView, FaceBefore};
 use crate::linalg::dyad;
 use crate::parallel::{for_each_block, own_rows};
 use crate::plugin::SimBuilder;
@@ -97,16 +97,12 @@ impl WallEnds {
     fn find_faces(&mut self, cloud: &FlowCloud, step: &Step<'_>) -> Result<(), StepError> {
         let Self { shapes, faces, .. } = self;
         for shape in shapes {
-            let view = step.world.phase(shape.group.phase);
-            let reference = &view.read_near::<ReferencePosition>()?[shape.group.rows.clone()];
-            let motion = shape.look(cloud, reference);
-            let shape = &*shape;
-            faces.add(|i| {
-                let place = shape.place(cloud, i, reference, motion.as_ref())?;
-                let nearness = shape.nearness(&place)?;
-                let normal = shape.direction(cloud, &place).normalize_or_zero();
-                Some(nearness * shape.on_face(cloud, &place) * dyad(normal, normal))
-            });
+            shape.look(cloud, step, |seen| {
+                faces.add(|i| {
+                    let FaceBefore { place, nearness, normal } = seen.face(cloud, i)?;
+                    Some(nearness * seen.shape.on_face(cloud, &place) * dyad(normal, normal))
+                });
+            })?;
         }
         Ok(())
     }
@@ -131,24 +127,28 @@ impl WallEnds {
     fn find_open(&mut self, cloud: &FlowCloud, step: &Step<'_>) -> Result<(), StepError> {
         let Self { shapes, found, .. } = self;
         for shape in shapes {
-            let view = step.world.phase(shape.group.phase);
-            let reference = &view.read_near::<ReferencePosition>()?[shape.group.rows.clone()];
-            let motion = shape.look(cloud, reference);
-            let shape = &*shape;
-            for_each_block(&mut found[..], &mut Vec::new(), &|_, found: &mut [(WallEnd, DVec3)]| {
-                for (end, along) in found.iter_mut().filter(|(end, _)| end.along != DMat3::ZERO) {
-                    if let Some(place) = shape.place(cloud, end.i, reference, motion.as_ref()) {
-                        let nearest = (1..=WAY)
-                            .map(|k| k as f64 / WAY as f64 * cloud.kernel.support)
-                            .map(|way| shape.distance_from(cloud, &place, way * *along))
-                            .fold(f64::INFINITY, f64::min);
-                        end.along *= (nearest / (CLEAR * shape.spacing)).clamp(0.0, 1.0);
+            shape.look(cloud, step, |seen| {
+                for_each_block(&mut found[..], &mut Vec::new(), &|_, found: &mut [(WallEnd, DVec3)]| {
+                    for (end, along) in found.iter_mut().filter(|(end, _)| end.along != DMat3::ZERO) {
+                        if let Some(open) = open_way(seen, cloud, end.i, *along) {
+                            end.along *= open;
+                        }
                     }
-                }
-            });
+                });
+            })?;
         }
         Ok(())
     }
+}
+
+/// What of the way `along` a wall from particle `i` is clear of it; none where the particle is not beside it.
+fn open_way(seen: &BoundaryView<'_>, cloud: &FlowCloud, i: usize, along: DVec3) -> Option<f64> {
+    let place = seen.place(cloud, i)?;
+    let nearest = (1..=WAY)
+        .map(|k| k as f64 / WAY as f64 * cloud.kernel.support)
+        .map(|way| seen.shape.distance_from(cloud, &place, way * along))
+        .fold(f64::INFINITY, f64::min);
+    Some((nearest / (CLEAR * seen.shape.spacing)).clamp(0.0, 1.0))
 }
 
 impl Run for WallEnds {
