@@ -6,6 +6,7 @@ mod toy;
 
 use meshless::assembly::build;
 use meshless::prelude::*;
+use meshless::world::Damage;
 use toy::Toy;
 
 fn simulation(text: &str) -> Simulation {
@@ -78,6 +79,57 @@ fn it_has_hourglass_control_pair_terms_symmetry_and_contact() {
     }
 }
 
+/// The upper half of a block on a plane of symmetry moves as that of the whole block does, and not as half a
+/// block without a plane.
+#[test]
+fn half_a_body_on_a_plane_of_symmetry_moves_as_the_whole_one() {
+    let block = |low: f64, plane: &str| {
+        let text = format!(
+            r#"(dimension: Two, materials: {{{RUBBER}}},
+                bodies: [(name: "block", material: "rubber", shape: Box(min: (0, {low:?}), max: (0.5, 0.3)), spacing: 0.05, formulation: Toy)],
+                conditions: [{plane} InitialVelocity(on: Select(), value: ("1.5*cos(9*x)", "6*y*sin(7*x)"))],
+                plugins: [hourglass_control()], time: (end: 1))"#
+        );
+        positions(&run(&text, 150))
+    };
+    let whole = block(-0.3, "");
+    let farthest = |half: &[DVec3]| {
+        let beside = |x: &DVec3| whole.iter().map(|y| x.distance(*y)).fold(f64::INFINITY, f64::min);
+        half.iter().map(beside).fold(0.0, f64::max)
+    };
+    let (with, without) = (block(0.0, "Symmetry(plane: Y, at: 0.0),"), block(0.0, ""));
+    assert_eq!((with.len(), without.len(), whole.len()), (60, 60, 120));
+    assert!(farthest(&with) < 1e-9, "{} m apart", farthest(&with));
+    assert!(farthest(&without) > 1e-4, "without a plane only {} m apart", farthest(&without));
+}
+
+/// Bodies that would fly through each other bounce.
+#[test]
+fn its_bodies_do_not_enter_each_other() {
+    let scene = |contact: &str| {
+        let body = |name: &str, x: f64, v: f64| {
+            format!(
+                r#"(name: "{name}", material: "rubber", shape: Box(min: ({x:?}, 0), max: ({:?}, 0.3)), spacing: 0.05, formulation: Toy, velocity: ({v:?}, 0))"#,
+                x + 0.3
+            )
+        };
+        let (left, right) = (body("left", 0.0, 2.0), body("right", 0.31, -2.0));
+        let text = format!(
+            r#"(dimension: Two, materials: {{{RUBBER}}}, bodies: [{left}, {right}], contacts: [{contact}],
+                plugins: [hourglass_control()], time: (end: 0.1))"#
+        );
+        let mut sim = simulation(&text);
+        sim.run(|_| true).expect("a run");
+        let x = positions(&sim);
+        let mean = |part: &[DVec3]| part.iter().map(|x| x.x).sum::<f64>() / part.len() as f64;
+        mean(&x[36..]) - mean(&x[..36])
+    };
+    let (bounced, entered) = (scene(r#"Contact(between: ("left", "right"), law: Penalty())"#), scene(""));
+    // The middles start 0.31 m apart and come 0.4 m closer in 0.1 s where nothing is in the way.
+    assert!((entered + 0.09).abs() < 1e-9, "{entered}");
+    assert!(bounced > 0.3, "{bounced}");
+}
+
 #[test]
 fn it_is_coupled_to_fluids_in_short_steps() {
     let text = format!(
@@ -112,6 +164,9 @@ fn its_particles_flow_and_fail() {
     for sim in alike(STRIP, 150, 1e-6) {
         let ledger = sim.ledger();
         assert!(ledger.total_named("plastic_work") > 0.0 && ledger.total_named("fracture") > 0.0);
+        let damage = sim.world().body_view(BodyId(0)).0.read::<Damage>().expect("a column");
+        let failed = damage.iter().filter(|damage| damage.0 == 1.0).count();
+        assert!((1..damage.len()).contains(&failed), "{failed} of {} have failed", damage.len());
     }
 }
 
