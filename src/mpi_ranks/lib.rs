@@ -3,7 +3,7 @@
 
 use std::cell::RefCell;
 
-use meshless_base::ranks::Ranks;
+use meshless_base::ranks::{Ranks, ReceivedParts, SentParts};
 use mpi::Threading;
 use mpi::datatype::{Partition, PartitionMut};
 use mpi::environment::Universe;
@@ -109,14 +109,14 @@ impl Ranks for MpiRanks {
         }
     }
 
-    fn exchange(&self, sent: (&[u8], &[usize]), received: (&mut [u8], &[usize])) {
+    fn exchange(&self, sent: SentParts<'_>, received: ReceivedParts<'_>) {
         let counts =
             |cuts: &[usize]| cuts.windows(2).map(|pair| count(pair[1] - pair[0])).collect::<Vec<i32>>();
         let places = |cuts: &[usize]| cuts[..self.size()].iter().map(|&cut| count(cut)).collect::<Vec<i32>>();
-        let out = Partition::new(addressed(sent.0), counts(sent.1), places(sent.1));
+        let out = Partition::new(addressed(sent.bytes), counts(sent.cuts), places(sent.cuts));
         let mut nothing = [0];
-        let into = if received.0.is_empty() { &mut nothing[..] } else { received.0 };
-        let mut into = PartitionMut::new(into, counts(received.1), places(received.1));
+        let into = if received.bytes.is_empty() { &mut nothing[..] } else { received.bytes };
+        let mut into = PartitionMut::new(into, counts(received.cuts), places(received.cuts));
         self.world.all_to_all_varcount_into(&out, &mut into);
     }
 

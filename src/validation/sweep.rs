@@ -82,7 +82,7 @@ pub fn sweep_of(registry: &Registry, flow: &str, set: &[(&str, &str)], steps: u6
     let source = source_of(flow, set)?;
     let mut checks = Vec::new();
     for plugin in PLUGINS {
-        checks.extend(run(registry, (flow, source.clone()), plugin, steps)?);
+        checks.extend(run(registry, flow, source.clone(), plugin, steps)?);
     }
     Ok(checks)
 }
@@ -109,7 +109,7 @@ fn source_of(flow: &str, set: &[(&str, &str)]) -> Result<Source> {
     Ok(source)
 }
 
-fn run(registry: &Registry, (flow, source): (&str, Source), plugin: &str, steps: u64) -> Result<[Check; 5]> {
+fn run(registry: &Registry, flow: &str, source: Source, plugin: &str, steps: u64) -> Result<[Check; 5]> {
     let (scene, source) = scene::parse(with_plugin(source, plugin, registry)?)?;
     let plugin = name_of(plugin);
     let mut simulation = assembly::build(&scene, &source, registry)?;

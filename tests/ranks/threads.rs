@@ -5,7 +5,7 @@ use std::rc::Rc;
 use std::sync::{Arc, Condvar, Mutex};
 use std::time::Duration;
 
-use meshless::ranks::{self, Ranks};
+use meshless::ranks::{self, Ranks, ReceivedParts, SentParts};
 
 /// How long a rank waits for the others before it says that they do not come.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -90,18 +90,18 @@ impl Ranks for Thread {
         });
     }
 
-    fn exchange(&self, (sent, cuts): (&[u8], &[usize]), (received, places): (&mut [u8], &[usize])) {
-        assert_eq!((cuts.len(), places.len()), (self.size + 1, self.size + 1));
+    fn exchange(&self, sent: SentParts<'_>, received: ReceivedParts<'_>) {
+        assert_eq!((sent.cuts.len(), received.cuts.len()), (self.size + 1, self.size + 1));
         self.table.meet(self.size, self.rank, |state| {
             state.parts[self.rank].clear();
-            state.parts[self.rank].extend_from_slice(sent);
-            state.cuts_of[self.rank] = cuts.to_vec();
+            state.parts[self.rank].extend_from_slice(sent.bytes);
+            state.cuts_of[self.rank] = sent.cuts.to_vec();
         });
         self.table.meet(self.size, self.rank, |state| {
             for rank in 0..self.size {
                 let from = &state.cuts_of[rank];
                 let part = &state.parts[rank][from[self.rank]..from[self.rank + 1]];
-                received[places[rank]..places[rank + 1]].copy_from_slice(part);
+                received.bytes[received.cuts[rank]..received.cuts[rank + 1]].copy_from_slice(part);
             }
         });
     }

@@ -166,8 +166,7 @@ impl SolidLaw for FailingLaw {
 
     fn stress(&self, rows: &mut StressRows<'_>) {
         let n = rows.deformation.len();
-        let mut given = [DMat3::IDENTITY; BLOCK];
-        let mut strain = [0.0; BLOCK];
+        let (mut given, mut strain) = ([DMat3::IDENTITY; BLOCK], [0.0; BLOCK]);
         let mut state = rows.state.reborrow();
         let (damage, reached) = (state.take::<Damage>(), state.take::<DamagedDeformation>());
         for k in 0..n {

@@ -96,7 +96,8 @@ impl TensileForce {
         &mut self,
         step: &mut Step<'_>,
         cloud: &FlowCloud,
-        (id, account): (BodyId, AccountId),
+        id: BodyId,
+        account: AccountId,
     ) -> Result<(), StepError> {
         let (view, rows) = step.world.body_view(id);
         let (pressure, velocity) = (view.read::<Pressure>()?, view.read::<Velocity>()?);
@@ -148,7 +149,7 @@ impl Run for TensileForce {
         cloud.for_each_row(0, &mut self.arrangements, &mut self.sums, &pass);
         self.interior.find(&cloud, |i| self.arrangements[i].lambda);
         for &id in bodies.iter() {
-            self.add_force(step, &cloud, (id, account))?;
+            self.add_force(step, &cloud, id, account)?;
         }
         Ok(())
     }

@@ -55,8 +55,10 @@ impl NeighborList {
     /// is kept.
     pub fn join<const N: usize>(
         &mut self,
-        (sets, is_wanted): (&[[u32; N]], impl Fn(usize) -> bool),
-        (other, first): (&Self, u32),
+        sets: &[[u32; N]],
+        is_wanted: impl Fn(usize) -> bool,
+        other: &Self,
+        first: u32,
         last: &mut Vec<u32>,
     ) {
         self.offsets.clear();

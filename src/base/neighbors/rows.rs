@@ -163,6 +163,7 @@ impl<const D: usize, const PERIODIC: bool, const UNIFORM: bool, const BOXES: boo
             let x_i = targets.positions[i];
             let support_i = if UNIFORM { 0.0 } else { targets.support_of(i) };
             let half = if BOXES { halves[i] } else { DVec3::ZERO };
+            let place = SearchBox { center: x_i, half, support: support_i };
             grid.around(x_i, if BOXES { radius + half.length() } else { radius }, ranges);
             if found.len() < used + ranges.room {
                 found.resize((used + ranges.room) * 3 / 2, 0);
@@ -176,7 +177,7 @@ impl<const D: usize, const PERIODIC: bool, const UNIFORM: bool, const BOXES: boo
                 let (candidates, four_rows) = test.candidates(sorted, range.first as usize, fours);
                 for (k, four_rows) in four_rows.iter().enumerate() {
                     let mask = if k + 1 < fours { MASKS[4] } else { last };
-                    let near = test.near(a, &candidates, k, (x_i, half, support_i)) & mask;
+                    let near = test.near(a, &candidates, k, &place) & mask;
                     if let Some(out) = found[used..].first_chunk_mut() {
                         *out = a.pack(*four_rows, near);
                     }
@@ -262,9 +263,9 @@ impl<'a, const D: usize, const PERIODIC: bool, const UNIFORM: bool, const BOXES:
         a: A,
         candidates: &CandidateFours<'_, D>,
         k: usize,
-        (x_i, half, support_i): (DVec3, DVec3, f64),
+        place: &SearchBox,
     ) -> usize {
-        let (x_i, half) = (x_i.to_array(), half.to_array());
+        let (x_i, half) = (place.center.to_array(), place.half.to_array());
         let mut square = Lanes4::ZERO;
         for axis in 0..D {
             let mut x = a.minus(Lanes4(candidates.coordinates[axis][k]), Lanes4::splat(x_i[axis]));
@@ -282,12 +283,20 @@ impl<'a, const D: usize, const PERIODIC: bool, const UNIFORM: bool, const BOXES:
         let limit = if UNIFORM {
             Lanes4::splat(self.square)
         } else {
-            let sum = a.plus(Lanes4(candidates.supports[k]), Lanes4::splat(support_i));
+            let sum = a.plus(Lanes4(candidates.supports[k]), Lanes4::splat(place.support));
             let radius = a.scale_add(0.5, sum, Lanes4::splat(self.skin));
             a.times(radius, radius)
         };
         a.below(square, limit)
     }
+}
+
+/// Where neighbours are looked for: a box, which is a point where `half` is zero.
+struct SearchBox {
+    center: DVec3,
+    half: DVec3,
+    /// Support radius; zero where all have the same.
+    support: f64,
 }
 
 /// Fours of sorted particles.

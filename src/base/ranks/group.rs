@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::rc::Rc;
 use std::time::Instant;
 
+use super::collective::{ReceivedParts, SentParts};
 use super::{Cut, Ranks};
 
 /// Data exchanged between a rank and the others.
@@ -47,9 +48,9 @@ impl RankGroup {
     }
 
     /// [`Ranks::exchange`], counted.
-    pub fn exchange(&mut self, sent: (&[u8], &[usize]), received: (&mut [u8], &[usize])) {
+    pub fn exchange(&mut self, sent: SentParts<'_>, received: ReceivedParts<'_>) {
         self.traffic.exchanges += 1;
-        self.traffic.bytes += received.0.len() as u64;
+        self.traffic.bytes += received.bytes.len() as u64;
         self.ranks.exchange(sent, received);
     }
 }

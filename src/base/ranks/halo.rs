@@ -5,6 +5,7 @@ use std::ops::Range;
 use bytemuck::Pod;
 
 use super::Cut;
+use super::collective::{ReceivedParts, SentParts};
 use super::exchange::SPOILED;
 use super::group::{self, RankGroup};
 
@@ -57,8 +58,8 @@ impl Halo {
         let mut send = vec![0_u32; send_cuts[size]];
         let bytes = |cuts: &[usize]| cuts.iter().map(|cut| cut * size_of::<u32>()).collect::<Vec<_>>();
         group.exchange(
-            (bytemuck::cast_slice(&receive), &bytes(&receive_cuts)),
-            (bytemuck::cast_slice_mut(&mut send), &bytes(&send_cuts)),
+            SentParts { bytes: bytemuck::cast_slice(&receive), cuts: &bytes(&receive_cuts) },
+            ReceivedParts { bytes: bytemuck::cast_slice_mut(&mut send), cuts: &bytes(&send_cuts) },
         );
         Self { cut: Some(group.cut.clone()), send, send_cuts, receive, receive_cuts, unread }
     }
@@ -120,7 +121,10 @@ impl Halo {
             self.send.iter().for_each(|&row| take(rows, row as usize, &mut out));
             into.resize(self.receive.len() * size, 0);
             let in_bytes = |cuts: &[usize]| cuts.iter().map(|cut| cut * size).collect::<Vec<_>>();
-            group.exchange((&out, &in_bytes(&self.send_cuts)), (&mut into, &in_bytes(&self.receive_cuts)));
+            group.exchange(
+                SentParts { bytes: &out, cuts: &in_bytes(&self.send_cuts) },
+                ReceivedParts { bytes: &mut into, cuts: &in_bytes(&self.receive_cuts) },
+            );
             for (&row, from) in self.receive.iter().zip(into.chunks_exact(size)) {
                 put(rows, row as usize, from);
             }

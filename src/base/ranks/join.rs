@@ -2,6 +2,7 @@
 
 use bytemuck::Pod;
 
+use super::collective::{ReceivedParts, SentParts};
 use super::group;
 
 /// Joins the values that the ranks have for each place: every rank joins those of a part of the places, and
@@ -15,8 +16,8 @@ pub fn join<T: Pod>(values: &mut [T], join: impl Fn(T, T) -> T) {
         let of_all: Vec<usize> = (0..=size).map(|k| k * own.len()).collect();
         let mut received = vec![T::zeroed(); own.len() * size];
         group.exchange(
-            (bytemuck::cast_slice(values), &in_bytes(&cuts)),
-            (bytemuck::cast_slice_mut(&mut received), &in_bytes(&of_all)),
+            SentParts { bytes: bytemuck::cast_slice(values), cuts: &in_bytes(&cuts) },
+            ReceivedParts { bytes: bytemuck::cast_slice_mut(&mut received), cuts: &in_bytes(&of_all) },
         );
         for (k, value) in values[own.clone()].iter_mut().enumerate() {
             let of_rank = |rank: usize| received[rank * own.len() + k];

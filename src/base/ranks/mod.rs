@@ -17,7 +17,7 @@ mod halo;
 mod join;
 mod tree;
 
-pub use collective::Ranks;
+pub use collective::{Ranks, ReceivedParts, SentParts};
 pub use cut::Cut;
 pub use exchange::{share, share_bodies, share_some, spoil_others};
 pub(crate) use group::work;

@@ -20,8 +20,8 @@ const SHARP: f64 = -0.9;
 const BESIDE: f64 = 1e-6;
 
 impl<R: Region + ?Sized> DifferenceRegion<R> {
-    /// Distance of a `point` from what is left of the whole, if the nearest face is an opening; `of_whole` and
-    /// `of_hole` are its distances from the whole and from the hole \[m\].
+    /// Distance of a `point` from what is left of the whole, if the nearest face is an opening; `of_whole`
+    /// and `of_hole` are its distances from the whole and from the hole \[m\].
     pub(super) fn through_opening(&self, point: DVec3, of_whole: f64, of_hole: f64) -> Option<f64> {
         let extent = self.hole.bounds().extent().max_element();
         if (of_whole - of_hole).abs() > COMMON * extent {
@@ -45,8 +45,8 @@ impl<R: Region + ?Sized> DifferenceRegion<R> {
         Some(of_sides.min(depth.hypot(beyond)))
     }
 
-    /// Distance of a `point` outside of the whole by `of_whole` and inside of the hole by `in_hole` \[m\], where
-    /// the nearest is the edge between the two faces; none where it is one of the faces.
+    /// Distance of a `point` outside of the whole by `of_whole` and inside of the hole by `in_hole` \[m\],
+    /// where the nearest is the edge between the two faces; none where it is one of the faces.
     pub(super) fn from_edge(&self, point: DVec3, of_whole: f64, in_hole: f64) -> Option<f64> {
         let step = BESIDE * self.hole.bounds().extent().max_element();
         let faces = [

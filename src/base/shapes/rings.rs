@@ -1,5 +1,5 @@
-//! Discs and rings, cylinders and tubes, balls and hollow spheres: shapes that layers about a centre or an axis
-//! fill.
+//! Discs and rings, cylinders and tubes, balls and hollow spheres: shapes that layers about a centre or an
+//! axis fill.
 
 use glam::DVec3;
 

@@ -2,6 +2,7 @@
 //! gravity.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use glam::DVec3;
 
@@ -105,7 +106,8 @@ impl Motions {
     /// Whether a condition moves a face along a direction at a time, s.
     pub fn is_driven(
         &self,
-        (body, face): (&BodyPlan, &[u32]),
+        body: &BodyPlan,
+        face: &[u32],
         along: DVec3,
         sim: &SimBuilder<'_>,
         t: f64,
@@ -133,9 +135,10 @@ impl Motions {
         let touch = if gap <= TOUCHING * pair[0].spacing.min(pair[1].spacing) {
             0.0
         } else {
-            let (from, to, left) = first_beyond(&closing, (0.0, self.end), gap)?;
-            let (from, to, _) = first_beyond(&closing, (from, to), left).unwrap_or((from, to, left));
-            0.5 * (from + to)
+            let part = first_beyond(&closing, 0.0..self.end, gap)?;
+            let GapClosing { span, .. } =
+                first_beyond(&closing, part.span.clone(), part.left).unwrap_or(part);
+            0.5 * (span.start + span.end)
         };
         let speed = closing(touch);
         (speed > 0.0 && speed >= SUDDEN * largest).then_some((speed, touch))
@@ -148,15 +151,23 @@ fn some_of(face: &[u32]) -> impl Iterator<Item = usize> {
     face.iter().step_by(every).map(|&number| number as usize)
 }
 
-/// The part of a time interval in which a gap closes, and the remaining gap at its start.
-fn first_beyond(closing: &dyn Fn(f64) -> f64, span: (f64, f64), gap: f64) -> Option<(f64, f64, f64)> {
-    let step = (span.1 - span.0) / f64::from(TIMES);
+/// A part of a span of time in which a gap closes.
+struct GapClosing {
+    /// Begin and end, s.
+    span: Range<f64>,
+    /// What is left of the gap at its begin, m.
+    left: f64,
+}
+
+/// The part of a span of time in which a gap closes that moves at a speed.
+fn first_beyond(closing: &dyn Fn(f64) -> f64, span: Range<f64>, gap: f64) -> Option<GapClosing> {
+    let step = (span.end - span.start) / f64::from(TIMES);
     let mut left = gap;
     for k in 0..TIMES {
-        let from = span.0 + step * f64::from(k);
+        let from = span.start + step * f64::from(k);
         let moved = step * closing(from + 0.5 * step);
         if moved >= left {
-            return Some((from, from + step, left));
+            return Some(GapClosing { span: from..from + step, left });
         }
         left -= moved;
     }

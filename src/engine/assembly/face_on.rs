@@ -56,7 +56,7 @@ fn text([a, b]: [&BodyPlan; 2], motions: &Motions, sim: &SimBuilder<'_>) -> Opti
     let is_driven = [a, b]
         .iter()
         .zip(&faces)
-        .any(|(body, face)| motions.is_driven((body, &face.numbers), along, sim, touch));
+        .any(|(body, face)| motions.is_driven(body, &face.numbers, along, sim, touch));
     // What goes on pressing soon causes stresses beside which the front is nothing.
     if is_driven && scene.time.end - touch > LONGEST_FRONT * transit([a, b], &faces) {
         return None;

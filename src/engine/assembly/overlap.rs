@@ -46,7 +46,7 @@ pub(super) fn problems(bodies: &[BodyPlan], scene: &Scene, folder: &Path) -> Vec
                 match [first, second].map(|body| body.kind == BodyKind::Rigid) {
                     [true, true] => true,
                     [false, false] if contact.surface == ContactSurface::Particles => false,
-                    _ => shapes.part(pair, [positions[i], positions[j as usize]]),
+                    _ => shapes.part([pair.0, pair.1], [positions[i], positions[j as usize]]),
                 }
             });
             if is_left {
@@ -74,8 +74,8 @@ struct Shapes<'a> {
 
 impl Shapes<'_> {
     /// Whether neither of two points, one of each body, is in the shape of the other one.
-    fn part(&mut self, pair: (usize, usize), at: [DVec3; 2]) -> bool {
-        !self.holds(pair.0, at[1]) && !self.holds(pair.1, at[0])
+    fn part(&mut self, pair: [usize; 2], at: [DVec3; 2]) -> bool {
+        !self.holds(pair[0], at[1]) && !self.holds(pair[1], at[0])
     }
 
     /// Whether a point is in a body; also where its shape is not known.

@@ -207,13 +207,14 @@ impl Registry {
         name: &'static str,
         reference: &'static str,
     ) -> &mut Self {
-        self.enter(kind, (name, reference), &Described::of::<T>(), |item| item.parse::<T>().map(drop))
+        self.enter(kind, name, reference, &Described::of::<T>(), |item| item.parse::<T>().map(drop))
     }
 
     fn enter(
         &mut self,
         kind: EntryKind,
-        (name, reference): (&'static str, &'static str),
+        name: &'static str,
+        reference: &'static str,
         described: &Described,
         parser: ParseItem,
     ) -> &mut Self {

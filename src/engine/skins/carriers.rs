@@ -74,7 +74,7 @@ pub(super) fn carriers(
                 few.push(k);
             } else {
                 let found = near.iter().map(|&number| images[number as usize]);
-                all[k] = shares(vertices[k], (cells, maps), found, reach);
+                all[k] = shares(vertices[k], cells, maps, found, reach);
             }
         }
         pending = few;
@@ -112,7 +112,8 @@ fn images(particles: &[DVec3], maps: &[Map], within: Aabb) -> Vec<Image> {
 
 fn shares(
     vertex: DVec3,
-    (cells, maps): (&CarrierCells<'_>, &[Map]),
+    cells: &CarrierCells<'_>,
+    maps: &[Map],
     near: impl Iterator<Item = Image>,
     reach: f64,
 ) -> Vec<Carrier> {

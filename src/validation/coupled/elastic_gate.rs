@@ -16,10 +16,20 @@ pub(crate) const CASE: Case =
 /// Thickness of the gate and its free length, m.
 const THICKNESS: f64 = 5.0e-3;
 const LENGTH: f64 = 79.0e-3;
-/// Young's modulus, Pa, Poisson's ratio, and where the end of the dry gate comes to rest, m: to the side and
-/// up.
-const DRY: [(f64, f64, [f64; 2]); 2] =
-    [(12.0e6, 0.4, [32.64e-3, 8.22e-3]), (7.8e6, 0.47, [41.45e-3, 13.82e-3])];
+/// A gate in air.
+#[derive(Clone, Copy)]
+struct DryGate {
+    /// Young's modulus, Pa.
+    young: f64,
+    poisson: f64,
+    /// Where its end comes to rest, m: to the side and up.
+    end: [f64; 2],
+}
+
+const DRY: [DryGate; 2] = [
+    DryGate { young: 12.0e6, poisson: 0.4, end: [32.64e-3, 8.22e-3] },
+    DryGate { young: 7.8e6, poisson: 0.47, end: [41.45e-3, 13.82e-3] },
+];
 const SOURCE: &str = "elastica in plane strain, reference.csv";
 /// Particles across of which the gate is put into water too, or a multiple, and compared with half as many:
 /// the lattices of the gate and of the tank then end at the same height.
@@ -43,11 +53,8 @@ fn elastic_gate(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     Ok(checks)
 }
 
-fn dry(
-    registry: &Registry,
-    across: usize,
-    (young, poisson, end): (f64, f64, [f64; 2]),
-) -> Result<Vec<Check>> {
+fn dry(registry: &Registry, across: usize, gate: DryGate) -> Result<Vec<Check>> {
+    let DryGate { young, poisson, end } = gate;
     let spacing = THICKNESS / across as f64;
     let path = "tests/validation/elastic_gate/dry.ron";
     let text = include_str!("../../../tests/validation/elastic_gate/dry.ron");

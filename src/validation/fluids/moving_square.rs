@@ -24,8 +24,8 @@ const REFERENCE: &str = include_str!("../../../tests/validation/moving_square/re
 const SOURCE: &str = "finite differences, reference.csv";
 /// Times of the means, s: while the square is accelerated, and over the time in which sound crosses the box
 /// and comes back.
-const START: (f64, f64) = (0.4, 0.6);
-const STEADY: (f64, f64) = (1.5, 2.17);
+const START: [f64; 2] = [0.4, 0.6];
+const STEADY: [f64; 2] = [1.5, 2.17];
 /// Tolerances at 40 across; they are in proportion to the spacing. The error of friction is over the whole
 /// drag.
 const DRAG: f64 = 0.05;
@@ -98,7 +98,7 @@ fn drag(simulation: &Simulation, square: BodyId) -> Result<[f64; 2]> {
 }
 
 /// Mean over a time.
-fn mean(record: &Record, (from, to): (f64, f64)) -> f64 {
+fn mean(record: &Record, [from, to]: [f64; 2]) -> f64 {
     let samples = record.0.iter().filter(|(t, _)| (from..=to).contains(t)).map(|sample| sample.1);
     samples.clone().sum::<f64>() / samples.count() as f64
 }

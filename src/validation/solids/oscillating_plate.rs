@@ -19,9 +19,21 @@ pub(crate) const CASE: Case = Case {
 
 const SOURCE: &str = "spectral elements, reference.csv";
 
-/// Thickness, period and amplitude, m and s.
-pub(crate) const PLATES: [(f64, f64, f64); 2] =
-    [(0.02, 0.25485194, 0.10659491), (0.01, 0.49992132, 0.16399172)];
+/// A plate that swings.
+#[derive(Clone, Copy)]
+pub(crate) struct SwingingPlate {
+    /// m.
+    pub thickness: f64,
+    /// s.
+    pub period: f64,
+    /// m.
+    pub amplitude: f64,
+}
+
+pub(crate) const PLATES: [SwingingPlate; 2] = [
+    SwingingPlate { thickness: 0.02, period: 0.25485194, amplitude: 0.10659491 },
+    SwingingPlate { thickness: 0.01, period: 0.49992132, amplitude: 0.16399172 },
+];
 
 fn oscillating_plate(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     // Decay is seen over 2.5 s; one swing is enough for the rest, and for the cheapest run.
@@ -34,12 +46,13 @@ fn oscillating_plate(registry: &Registry, across: usize) -> Result<Vec<Check>> {
 pub(super) fn plate(
     registry: &Registry,
     across: usize,
-    (thickness, period_reference, amplitude_reference): (f64, f64, f64),
+    reference: SwingingPlate,
     long: bool,
 ) -> Result<Vec<Check>> {
     let mut checks = Vec::new();
+    let thickness = reference.thickness;
     let spacing = thickness / across as f64;
-    let end = if long { 2.5 } else { 1.1 * period_reference };
+    let end = if long { 2.5 } else { 1.1 * reference.period };
     let mut simulation = Template::new(
         "tests/validation/oscillating_plate/scene.ron",
         include_str!("../../../tests/validation/oscillating_plate/scene.ron"),
@@ -57,15 +70,15 @@ pub(super) fn plate(
     })?;
     let crossings = deflection.upward_crossings(0.0);
     let period =
-        *crossings.iter().find(|&&t| t > 0.5 * period_reference).context("the plate does not swing")?;
+        *crossings.iter().find(|&&t| t > 0.5 * reference.period).context("the plate does not swing")?;
     let (_, amplitude) = deflection.clone().until(period).maximum()?;
     let name = |what: &str| format!("h = {thickness} m: {what}");
-    let swing = Check::new(name("period"), period, period_reference, Tolerance::Relative(0.02), "s", SOURCE);
+    let swing = Check::new(name("period"), period, reference.period, Tolerance::Relative(0.02), "s", SOURCE);
     // In the thin plate the bending stiffness of the control and the softness of the clamp cancel each other
     // at 10 across; both fall, their sum does not.
     checks.push(if thickness > 0.015 { swing.converging() } else { swing });
     checks.push(
-        Check::new(name("amplitude"), amplitude, amplitude_reference, Tolerance::Relative(0.05), "m", SOURCE)
+        Check::new(name("amplitude"), amplitude, reference.amplitude, Tolerance::Relative(0.05), "m", SOURCE)
             .converging(),
     );
     checks.push(balance.check_of(&format!("h = {thickness} m"), Kind::Smooth));

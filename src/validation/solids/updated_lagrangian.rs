@@ -22,7 +22,7 @@ macro_rules! cases {
         pub(crate) const $name: Case = Case {
             id: $id,
             title: concat!($title, ", updated-Lagrangian"),
-            run: |registry, resolution| run(registry, $formulation, &$case, (resolution, $factor)),
+            run: |registry, resolution| run(registry, $formulation, &$case, resolution, $factor),
             $(ci_resolution: $tested,)?
             ..$case
         };
@@ -85,7 +85,8 @@ fn run(
     registry: &Registry,
     formulation: &'static str,
     case: &Case,
-    (resolution, factor): (usize, f64),
+    resolution: usize,
+    factor: f64,
 ) -> Result<Vec<Check>> {
     let mut registry = registry.clone().with_stand_in("TotalLagrangian", formulation);
     registry.formulation::<Updated>();

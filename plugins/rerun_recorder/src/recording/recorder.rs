@@ -295,7 +295,7 @@ impl Recorder for RerunFile {
 
     fn samples(&mut self, step: u64, time: f64, samples: &[Sample<'_>]) -> Result<(), RecordError> {
         let open = self.open.as_mut().ok_or(RerunError::NotOpen)?;
-        Ok(open.series.take(&open.output, (step, time), samples)?)
+        Ok(open.series.take(&open.output, step, time, samples)?)
     }
 
     fn flush(&mut self) -> Result<(), RecordError> {

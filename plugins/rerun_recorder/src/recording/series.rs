@@ -87,7 +87,8 @@ impl SeriesTable {
     pub fn take(
         &mut self,
         output: &RecordingOutput,
-        (step, time): (u64, f64),
+        step: u64,
+        time: f64,
         samples: &[Sample<'_>],
     ) -> Result<(), RerunError> {
         let mut most = 0;
@@ -367,7 +368,7 @@ mod tests {
         for (step, values) in [[0.0, 0.0, 0.0], [2.0, 0.0, 1.0], [0.0, 0.0, 0.0]].iter().enumerate() {
             let samples: Vec<Sample<'_>> =
                 names.iter().zip(values).map(|(&name, &value)| Sample { name, unit: "J", value }).collect();
-            table.take(&output, (step as u64, step as f64), &samples).expect("they are taken");
+            table.take(&output, step as u64, step as f64, &samples).expect("they are taken");
         }
         let friction = paths::series("energy/friction");
         assert!(!table.energies()[0].exclude.contains(&friction), "it may move yet");
@@ -386,7 +387,7 @@ mod tests {
         let names = ["energy/kinetic", "energy/hourglass"];
         let mut table = table(&["plate"], &names.map(|name| (name, "J")));
         let samples = [1.0, 0.001].iter().zip(names).map(|(&value, name)| Sample { name, unit: "J", value });
-        table.take(&output, (0, 0.0), &samples.collect::<Vec<_>>()).expect("they are taken");
+        table.take(&output, 0, 0.0, &samples.collect::<Vec<_>>()).expect("they are taken");
         table.finish();
         let plots = table.energies();
         let hourglass = paths::series("energy/hourglass");
@@ -404,7 +405,7 @@ mod tests {
         let mut pieces = 0;
         for step in 0..10_000 {
             let sample = Sample { name: "probe/tip", unit: "m", value: 1.0 };
-            table.take(&output, (step, step as f64), &[sample]).expect("they are taken");
+            table.take(&output, step, step as f64, &[sample]).expect("they are taken");
             let before = table.sent;
             table.send_if_due(&output).expect("they are sent");
             pieces += usize::from(table.sent > before);

@@ -5,7 +5,7 @@ use std::cell::Ref;
 use glam::{DMat3, DVec3};
 use hecs::ArchetypeColumn;
 
-use super::shape::Shape;
+use super::shape::ParticleShape;
 use crate::plugin::{BodyPlan, Offer};
 use crate::removal::Leaving;
 use crate::scene::Dimension;
@@ -167,8 +167,9 @@ impl Members<'_> {
     }
 
     /// Current shape of a particle.
-    pub fn shape(&self, i: usize) -> Shape {
-        (self.radius[i], self.gradient.map(|f| f[self.first_row + i].0))
+    pub fn shape(&self, i: usize) -> ParticleShape {
+        let gradient = self.gradient.map(|f| f[self.first_row + i].0);
+        ParticleShape { radius: self.radius[i], gradient }
     }
 
     /// The point `arm` beside a particle in the reference configuration, at present, relative to the

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::members::Members;
-use super::shape::{Nearness, on_surface};
+use super::shape::{Nearness, ParticleShape, on_surface};
 use crate::rigid::{RigidBody, Round};
 use crate::shapes::SurfacePoint;
 use crate::solids::LocalMotion;
@@ -96,8 +96,8 @@ impl NodeView<'_> {
         let shape = match self {
             Self::Particles(members) => members.shape(i),
             Self::Rigid(body) => match body.nodes.list()[i].round {
-                Round::Ball(radius) => (radius, None),
-                Round::Point | Round::Rim(_) => (0.0, None),
+                Round::Ball(radius) => ParticleShape { radius, gradient: None },
+                Round::Point | Round::Rim(_) => ParticleShape { radius: 0.0, gradient: None },
             },
         };
         on_surface(distance, normal, shape)

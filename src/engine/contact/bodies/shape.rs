@@ -11,9 +11,14 @@ use glam::{DMat3, DVec3};
 
 use crate::world::DeformationGradient;
 
-/// A particle: radius in the reference configuration, m, and deformation gradient; without one it stays a
-/// sphere.
-pub(in crate::contact) type Shape = (f64, Option<DMat3>);
+/// The shape of a particle.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::contact) struct ParticleShape {
+    /// Radius in the reference configuration, m.
+    pub radius: f64,
+    /// Deformation gradient; without one it stays a sphere.
+    pub gradient: Option<DMat3>,
+}
 
 /// Distance and normal of two sides near each other.
 #[derive(Clone, Copy, Debug, Default)]
@@ -32,12 +37,14 @@ pub(in crate::contact) struct Nearness {
 /// the ellipsoid of `Q = (r_i + r_j) (r_i F_i F_i^T + r_j F_j F_j^T)`, which is exact where both have one
 /// deformation gradient, and s^2 = x . Q^-1 x. The point of contact is the same seen from both: F_i A_i - F_j
 /// A_j = Q Q^-1 x = x.
-pub(in crate::contact) fn of_pair(x_ij: DVec3, first: Shape, second: Shape) -> Nearness {
-    let reach = first.0 + second.0;
-    let square = |(radius, f): Shape| f.map_or(DMat3::IDENTITY, |f| f * f.transpose()) * (reach * radius);
+pub(in crate::contact) fn of_pair(x_ij: DVec3, first: ParticleShape, second: ParticleShape) -> Nearness {
+    let reach = first.radius + second.radius;
+    let square =
+        |of: ParticleShape| of.gradient.map_or(DMat3::IDENTITY, |f| f * f.transpose()) * (reach * of.radius);
     let y = (square(first) + square(second)).inverse() * x_ij;
     let (s, length) = (x_ij.dot(y).sqrt(), y.length());
-    let arm = |(radius, f): Shape| f.map_or(DVec3::ZERO, |f| f.transpose() * y * (reach * radius));
+    let arm =
+        |of: ParticleShape| of.gradient.map_or(DVec3::ZERO, |f| f.transpose() * y * (reach * of.radius));
     Nearness {
         overlap: reach * (1.0 - s),
         normal: -y / length,
@@ -48,7 +55,8 @@ pub(in crate::contact) fn of_pair(x_ij: DVec3, first: Shape, second: Shape) -> N
 
 /// The ellipsoid of a particle and a surface at a signed distance along its outward normal: s = distance /
 /// (r |F^T n|). The point of contact is on the surface.
-pub(in crate::contact) fn on_surface(distance: f64, normal: DVec3, (radius, f): Shape) -> Nearness {
+pub(in crate::contact) fn on_surface(distance: f64, normal: DVec3, shape: ParticleShape) -> Nearness {
+    let ParticleShape { radius, gradient: f } = shape;
     let along = f.map_or(normal, |f| f.transpose() * normal);
     let stretch = along.length();
     let arm = if f.is_some() { -along * (distance / (stretch * stretch)) } else { DVec3::ZERO };

@@ -85,7 +85,7 @@ impl ParticleContact {
     ) -> Result<ContactEnergy, StepError> {
         let (speed, stretch) = self.search_anew(step, motion)?;
         let (energies, least) = self.evaluate(step, stretch)?;
-        let bodies = (self.first.body, self.second.body);
+        let bodies = [self.first.body, self.second.body];
         let touches = Touches { squared: self.stiffest(), stored: energies.stored, speed, reach: least };
         time_step::propose(step, bodies, &touches)?;
         Ok(energies)

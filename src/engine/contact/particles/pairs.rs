@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::contact::active::{ContactEnd, ContactNodes, Least, NodeLoad};
-use crate::contact::bodies::{Members, Nearness, of_pair};
+use crate::contact::bodies::{Members, Nearness, ParticleShape, of_pair};
 use crate::contact::laws::Touch;
 use crate::contact::response::{ContactEnergy, ContactState, History, Interaction, Losses, PairKey};
 use crate::neighbors::Periodic;
@@ -49,8 +49,9 @@ impl ContactPairs<'_> {
         if squared >= farthest * farthest || squared == 0.0 {
             return None;
         }
-        let (radius, f) = second.shape(j);
-        let near = of_pair(x_ij, first.shape(i), (radius, f.map(|f| mirror.tensor(f))));
+        let other = second.shape(j);
+        let other = ParticleShape { gradient: other.gradient.map(|f| mirror.tensor(f)), ..other };
+        let near = of_pair(x_ij, first.shape(i), other);
         least.add_length(reach / near.scale);
         // What is not a number does not touch.
         let touches = near.overlap > 0.0 && first.is_there(i) && second.is_there(j);

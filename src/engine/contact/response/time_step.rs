@@ -110,16 +110,16 @@ pub(in crate::contact) struct Touches {
 /// A column is missing.
 pub(in crate::contact) fn propose(
     step: &mut Step<'_>,
-    pair: (BodyId, BodyId),
+    pair: [BodyId; 2],
     touches: &Touches,
 ) -> Result<(), StepError> {
     let &Touches { squared, stored, speed, reach } = touches;
     let world = step.world;
-    let (one, other) = (&world.body(pair.0).name, &world.body(pair.1).name);
+    let (one, other) = (&world.body(pair[0]).name, &world.body(pair[1]).name);
     if squared > 0.0 {
         // Before the first step a clock has no step.
         let is_loaded = step.clock.dt == 0.0 && {
-            let (view, rows) = world.body_view(pair.0);
+            let (view, rows) = world.body_view(pair[0]);
             stored > 0.5 * view.read::<Mass>()?[rows.start].0 * squared * (LOADED * reach).powi(2)
         };
         let share = if is_loaded { OF_LOADED } else { 1.0 };
@@ -193,13 +193,13 @@ impl NormalMotion {
 /// Proposes the limit of contacts of two rigid bodies of a squared frequency, 1/s2.
 pub(in crate::contact) fn propose_rigid(
     step: &mut Step<'_>,
-    pair: (BodyId, BodyId),
+    pair: [BodyId; 2],
     squared: f64,
     landing: NormalMotion,
 ) {
     if squared > 0.0 {
         let world = step.world;
-        let (one, other) = (&world.body(pair.0).name, &world.body(pair.1).name);
+        let (one, other) = (&world.body(pair[0]).name, &world.body(pair[1]).name);
         let (frequency, dt) = (squared.sqrt(), step.clock.dt);
         let limit = landing.factor(frequency, dt) / frequency;
         step.limits.propose(limit, format_args!("contact of rigid `{one}` and `{other}`"));
@@ -214,13 +214,13 @@ const APPROACH_FACTOR: [f64; 2] = [0.1, 0.25];
 /// m.
 pub(in crate::contact) fn propose_approach(
     step: &mut Step<'_>,
-    pair: (BodyId, BodyId),
+    pair: [BodyId; 2],
     velocity: DVec3,
     gap: f64,
 ) {
     let speed = velocity.length();
     if speed > 0.0 {
-        let (one, other) = (step.world.body(pair.0), step.world.body(pair.1));
+        let (one, other) = (step.world.body(pair[0]), step.world.body(pair[1]));
         let [of_spacing, of_gap] = APPROACH_FACTOR;
         let limit = (of_spacing * one.spacing.min(other.spacing) + of_gap * gap) / speed;
         let (one, other) = (&one.name, &other.name);

@@ -2,8 +2,16 @@
 
 use glam::DVec3;
 
-/// Numbers of vertices, and where all vertices of their side were and are, m.
-pub(super) type Displaced<'a> = (&'a [u32], &'a [DVec3], &'a [DVec3]);
+/// Vertices of a side that have moved.
+#[derive(Clone, Copy)]
+pub(super) struct Displaced<'a> {
+    /// Their numbers.
+    pub vertices: &'a [u32],
+    /// Where all vertices of the side were, m.
+    pub before: &'a [DVec3],
+    /// Where they are, m.
+    pub now: &'a [DVec3],
+}
 
 /// A bound of how much closer any two vertices of both sides have come, m; not a number if a place is none.
 /// What all have moved in common does not count.
@@ -19,7 +27,7 @@ pub(super) fn approach(sides: [Displaced<'_>; 2]) -> f64 {
 }
 
 /// Least and largest components of the displacements of a side; not finite if one of them is no number.
-fn range((vertices, before, now): Displaced<'_>) -> (DVec3, DVec3) {
+fn range(Displaced { vertices, before, now }: Displaced<'_>) -> (DVec3, DVec3) {
     let (mut least, mut most, mut sum) = (DVec3::INFINITY, DVec3::NEG_INFINITY, DVec3::ZERO);
     for &vertex in vertices {
         let moved = now[vertex as usize] - before[vertex as usize];
@@ -37,7 +45,11 @@ mod tests {
         let before = [DVec3::ZERO, DVec3::X, DVec3::Y];
         let moved = |by: [DVec3; 3]| [0, 1, 2].map(|k| before[k] + by[k]);
         let of = |first: [DVec3; 3], second: [DVec3; 3]| {
-            approach([(&[0, 2], &before, &moved(first)), (&[1, 2], &before, &moved(second))])
+            let [first, second] = [first, second].map(moved);
+            approach([
+                Displaced { vertices: &[0, 2], before: &before, now: &first },
+                Displaced { vertices: &[1, 2], before: &before, now: &second },
+            ])
         };
         let both = DVec3::new(3.0, -2.0, 1.0);
         assert!(of([both; 3], [both; 3]) < 1e-12);

@@ -7,7 +7,7 @@
 
 use glam::DVec3;
 
-use super::displaced::approach;
+use super::displaced::{Displaced, approach};
 use super::near_tool::{FASTER, MARGIN};
 use super::region::SkinRegion;
 use crate::contact::response::PairKey;
@@ -161,7 +161,11 @@ impl NearSkins {
     /// come closer than `margin`, m, soon.
     fn keeps(&mut self, near: f64, margin: f64) -> bool {
         let Self { regions, found_at, places, .. } = self;
-        let of_side = |side: usize| (&regions[side].vertices[..], &found_at[side][..], &places[side][..]);
+        let of_side = |side: usize| Displaced {
+            vertices: &regions[side].vertices,
+            before: &found_at[side],
+            now: &places[side],
+        };
         let beyond = near + regions[0].left.min(regions[1].left);
         let left = (near - approach([of_side(0), of_side(1)])).min(beyond) - margin;
         let keeps = left > KEPT * (near - margin);

@@ -50,15 +50,15 @@ impl NearTool {
     }
 
     /// Finds the facets near the tool.
-    pub fn find(&mut self, skin: &Skin, view: &SkinView<'_>, on: (&ContactSides, &RigidBody)) {
+    pub fn find(&mut self, skin: &Skin, view: &SkinView<'_>, sides: &ContactSides, tool: &RigidBody) {
         let near = NEAR * skin.spacing;
         if self.region.is_old() {
             self.region.take_all(skin);
-            self.look(view, on);
+            self.look(view, sides, tool);
             let places = &self.places;
             self.region.choose(skin, near, |facet| gap(skin, places, facet));
         } else {
-            self.look(view, on);
+            self.look(view, sides, tool);
         }
         self.left = self.region.left + near;
         self.facets.clear();
@@ -74,7 +74,7 @@ impl NearTool {
     }
 
     /// Computes the positions of the vertices of the region.
-    fn look(&mut self, view: &SkinView<'_>, (sides, tool): (&ContactSides, &RigidBody)) {
+    fn look(&mut self, view: &SkinView<'_>, sides: &ContactSides, tool: &RigidBody) {
         let rows = Picked::new(&self.region.vertices, &mut self.places);
         type Rows<'a> = Picked<'a, (DVec3, f64)>;
         for_each_block(rows, &mut Vec::new(), &|_, mut rows: Rows<'_>| {

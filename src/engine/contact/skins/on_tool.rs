@@ -124,7 +124,7 @@ impl SkinOnTool {
         let view = columns.view();
         let speeds = MotionBounds::speeds(motion);
         if self.near.is_old(speeds, dt) {
-            self.near.find(&skin, &view, (&self.sides, tool));
+            self.near.find(&skin, &view, &self.sides, tool);
             self.patch.select(self.near.facets.iter().copied());
         }
         let wanted = Wanted { mobility: self.interaction.damping_ratio > 0.0, gradients: false };
@@ -143,7 +143,7 @@ impl SkinOnTool {
         let stiffness = OfSkins { law, touch, usual, stiffest, gap, speed, dt, keeps_reference }.stiffness();
         let squared = stiffness * skin.lightness + of_tool;
         let touches = Touches { squared, stored: energies.stored, speed, reach: skin.spacing };
-        time_step::propose(step, (skin.body, self.tool), &touches)?;
+        time_step::propose(step, [skin.body, self.tool], &touches)?;
         Ok((energies, on_tool))
     }
 
@@ -159,7 +159,7 @@ impl SkinOnTool {
     /// Computes the position of the tool relative to the vertices.
     fn look(&mut self, tool: &RigidBody, dt: f64) {
         let Self { interaction, patch, sides, seen, .. } = self;
-        let (on, vertices) = (Pressing::new(interaction, patch, (sides, tool), dt), patch.vertices());
+        let (on, vertices) = (Pressing::new(interaction, patch, sides, tool, dt), patch.vertices());
         seen.resize(vertices.len(), ToolView::default());
         let rows = (&mut seen[..], vertices);
         for_each_block(rows, &mut Vec::new(), &|_, (seen, vertices): (&mut [ToolView], &[Vertex])| {
@@ -173,7 +173,7 @@ impl SkinOnTool {
     fn press_facets(&mut self, tool: &RigidBody, dt: f64) -> Extremes {
         let Self { interaction, patch, sides, points, near, seen, reached, on_facets, .. } = self;
         let (patch, points, seen) = (&*patch, &*points, &*seen);
-        let on = Pressing::new(interaction, patch, (sides, tool), dt);
+        let on = Pressing::new(interaction, patch, sides, tool, dt);
         reached.resize(near.facets.len(), Reached::Partly);
         on_facets.resize(near.facets.len(), Default::default());
         let rows = (&near.facets[..], &mut reached[..], &mut on_facets[..]);
@@ -222,7 +222,7 @@ impl SkinOnTool {
     /// Adds the forces of the areas of even facets to their vertices.
     fn press_vertices(&mut self, tool: &RigidBody, dt: f64) -> Extremes {
         let Self { interaction, patch, sides, seen, pressed, even, .. } = self;
-        let on = Pressing::new(interaction, patch, (sides, tool), dt);
+        let on = Pressing::new(interaction, patch, sides, tool, dt);
         let rows = (&mut pressed[..], &seen[..], &even[..]);
         type Rows<'a> = (&'a mut [Pressed], &'a [ToolView], &'a [f64]);
         sum_over_blocks(rows, &|_, (pressed, seen, even): Rows<'_>| {

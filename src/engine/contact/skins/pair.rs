@@ -87,7 +87,7 @@ impl SkinPair {
         let squared = CORNERS * stiffness * (skins[0].lightness + skins[1].lightness);
         let reach = skins[0].spacing.min(skins[1].spacing);
         let touches = Touches { squared, stored: energies.stored, speed, reach };
-        time_step::propose(step, (skins[0].body, skins[1].body), &touches)?;
+        time_step::propose(step, [skins[0].body, skins[1].body], &touches)?;
         Ok(energies)
     }
 

@@ -243,7 +243,8 @@ impl<'a> Pressing<'a> {
     pub fn new(
         interaction: &'a Interaction,
         patch: &'a Patch,
-        (sides, tool): (&'a ContactSides, &'a RigidBody),
+        sides: &'a ContactSides,
+        tool: &'a RigidBody,
         dt: f64,
     ) -> Self {
         let (touch, usual) = touch_of(&patch.skin, tool);

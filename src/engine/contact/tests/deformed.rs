@@ -3,12 +3,16 @@
 use glam::{DMat3, DVec3};
 
 use super::{angular_momentum, momentum, simulation};
-use crate::contact::bodies::shape::{Nearness, Shape, of_pair, on_surface, squared_stretch};
+use crate::contact::bodies::shape::{Nearness, ParticleShape, of_pair, on_surface, squared_stretch};
 use crate::simulation::Simulation;
 use crate::world::{BodyId, DeformationGradient};
 
 const FIRST: DMat3 = DMat3::from_cols_array(&[1.3, 0.1, -0.2, 0.05, 0.8, 0.1, 0.3, 0.0, 0.9]);
 const SECOND: DMat3 = DMat3::from_cols_array(&[0.9, -0.3, 0.1, 0.2, 1.4, 0.0, 0.1, 0.2, 0.6]);
+
+fn ellipsoid(radius: f64, f: DMat3) -> ParticleShape {
+    ParticleShape { radius, gradient: Some(f) }
+}
 
 /// d f / d q of a function of a vector or matrix, by central differences, contracted with `along`.
 fn slope(f: impl Fn(f64) -> f64) -> f64 {
@@ -19,7 +23,7 @@ fn slope(f: impl Fn(f64) -> f64) -> f64 {
 fn the_force_at_the_point_of_contact_is_the_gradient_of_the_overlap_of_two_particles() {
     let x = DVec3::new(0.9, -0.7, 1.1);
     let (r, s) = (1.1, 0.8);
-    let near = |x: DVec3, f: DMat3, g: DMat3| of_pair(x, (r, Some(f)), (s, Some(g)));
+    let near = |x: DVec3, f: DMat3, g: DMat3| of_pair(x, ellipsoid(r, f), ellipsoid(s, g));
     let here = near(x, FIRST, SECOND);
     let force = here.scale * here.normal;
     for way in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::new(0.3, -1.0, 0.4)] {
@@ -42,7 +46,7 @@ fn the_force_at_the_point_of_contact_is_the_gradient_of_the_overlap_of_two_parti
 #[test]
 fn the_force_on_a_plane_is_the_gradient_of_the_overlap_and_acts_on_the_plane() {
     let normal = DVec3::new(0.2, -0.4, 0.9).normalize();
-    let near = |distance: f64, f: DMat3| on_surface(distance, normal, (1.1, Some(f)));
+    let near = |distance: f64, f: DMat3| on_surface(distance, normal, ellipsoid(1.1, f));
     for distance in [0.7, -0.2] {
         let here = near(distance, FIRST);
         let force = here.scale * normal;
@@ -61,9 +65,10 @@ fn the_force_on_a_plane_is_the_gradient_of_the_overlap_and_acts_on_the_plane() {
 #[test]
 fn a_particle_that_turns_stays_a_sphere_and_a_pressed_one_reaches_as_far_as_its_material() {
     let turn = DMat3::from_axis_angle(DVec3::new(1.0, 2.0, -0.5).normalize(), 0.8);
-    let other: Shape = (0.7, Some(turn.transpose()));
+    let other = ellipsoid(0.7, turn.transpose());
     let x = DVec3::new(0.9, 0.2, -0.4);
-    let (turned, plain) = (of_pair(x, (0.6, Some(turn)), other), of_pair(x, (0.6, None), (0.7, None)));
+    let sphere = |radius: f64| ParticleShape { radius, gradient: None };
+    let (turned, plain) = (of_pair(x, ellipsoid(0.6, turn), other), of_pair(x, sphere(0.6), sphere(0.7)));
     let near = |near: &Nearness| near.scale * near.normal;
     assert!(
         (turned.overlap - (1.3 - x.length())).abs() < 1e-12 && (turned.overlap - plain.overlap).abs() < 1e-12
@@ -75,10 +80,10 @@ fn a_particle_that_turns_stays_a_sphere_and_a_pressed_one_reaches_as_far_as_its_
     let flat = turn * DMat3::from_diagonal(DVec3::new(2.0, 1.5, 0.2));
     for (axis, stretch) in [(DVec3::X, 2.0), (DVec3::Y, 1.5), (DVec3::Z, 0.2)] {
         let along = turn * axis;
-        let touching = of_pair(along * (1.2 * stretch), (0.6, Some(flat)), (0.6, Some(flat)));
+        let touching = of_pair(along * (1.2 * stretch), ellipsoid(0.6, flat), ellipsoid(0.6, flat));
         assert!(touching.overlap.abs() < 1e-12 && (touching.normal + along).length() < 1e-12);
         assert!((touching.scale * stretch - 1.0).abs() < 1e-12);
-        assert!(on_surface(0.6 * stretch, along, (0.6, Some(flat))).overlap.abs() < 1e-12);
+        assert!(on_surface(0.6 * stretch, along, ellipsoid(0.6, flat)).overlap.abs() < 1e-12);
     }
     let stretch = |f: DMat3| squared_stretch(&DeformationGradient(f)).sqrt();
     assert!((stretch(DMat3::from_diagonal(DVec3::new(0.3, 1.7, 1.0))) - 1.7).abs() < 1e-12);

@@ -149,7 +149,7 @@ impl SurfaceContact {
         });
         let [particle, rigid] = push(sides, contacts.met(), pushes, nodes, &mut bodies);
         let squared = rigid + if of_particles.is_some() { contact_nodes.stiffest() } else { particle };
-        let pair = (sides.first, sides.second);
+        let pair = [sides.first, sides.second];
         match of_particles {
             Some(particles) if expected == 0.0 => {
                 let reach = 2.0 * near.least.0.min(particles.least());

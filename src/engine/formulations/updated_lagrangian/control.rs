@@ -21,6 +21,8 @@
 //! Before the first update these sums equal those of the stress: the terms are then folded into the stress,
 //! as in a total-Lagrangian body.
 
+use std::ops::Range;
+
 use glam::{DMat3, DVec3};
 
 use crate::formulations::bonded::{
@@ -129,17 +131,21 @@ impl ControlPass<'_> {
     }
 }
 
-/// Whether these are the places, gradients and volumes of the start; those that have been removed do not
-/// count.
-pub(super) fn is_original(
-    mut rows: std::ops::Range<usize>,
-    (reference, original): (&[DVec3], &[DVec3]),
-    gradient: &[DMat3],
-    (volume, start): (&[f64], &[f64]),
-) -> bool {
-    rows.all(|row| {
-        reference[row] == original[row]
-            && gradient[row] == DMat3::IDENTITY
-            && (volume[row] == start[row] || volume[row] == 0.0)
-    })
+/// Places, m, and volumes, m3, of the particles in a reference.
+#[derive(Clone, Copy)]
+pub(super) struct ReferenceRows<'a> {
+    pub places: &'a [DVec3],
+    pub volumes: &'a [f64],
+}
+
+impl ReferenceRows<'_> {
+    /// Whether some rows are as at the start, with F_r the identity; those that have been removed do not
+    /// count.
+    pub fn is_original(self, original: Self, gradient: &[DMat3], mut rows: Range<usize>) -> bool {
+        rows.all(|row| {
+            self.places[row] == original.places[row]
+                && gradient[row] == DMat3::IDENTITY
+                && (self.volumes[row] == original.volumes[row] || self.volumes[row] == 0.0)
+        })
+    }
 }

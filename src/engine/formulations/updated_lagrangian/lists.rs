@@ -66,7 +66,7 @@ impl ReferenceLists {
     /// Begins a reference of bodies with these rows.
     pub fn begin(&mut self, reference: &ReferenceOfPhase<'_>, bodies: impl Iterator<Item = Range<usize>>) {
         let ReferenceOfPhase { places, volumes, support, ellipsoids, ghosts } = *reference;
-        self.seen.fill(ghosts, ellipsoids, support, (places, volumes));
+        self.seen.fill(ghosts, ellipsoids, support, places, volumes);
         self.radii.clear();
         let mut count = 0;
         for rows in bodies {
@@ -108,7 +108,8 @@ impl ReferenceLists {
     /// Begins the bonds of the stabilizers, with original places, m, volumes, m3, and F_r.
     pub fn begin_control(
         &mut self,
-        (original, volumes): (&[DVec3], &[f64]),
+        original: &[DVec3],
+        volumes: &[f64],
         gradient: &[DMat3],
         ghosts: &Ghosts,
     ) {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::columns::{UpdatedGradient, UpdatedMetric, UpdatedReference, UpdatedVolume};
-use super::control::is_original;
+use super::control::ReferenceRows;
 use super::lists::{ReferenceOfPhase, UpdatedBody};
 use super::phase::UpdatedRows;
 use crate::formulations::bonded::{BodyKernel, BondError, Ellipsoid, Ellipsoids, PackedParticle};
@@ -135,12 +135,13 @@ impl UpdatedRows {
         let (reference, original) =
             (view.read_near::<UpdatedReference>()?, view.read_near::<ReferencePosition>()?);
         let start = view.read_near::<ReferenceVolume>()?;
-        let (reference, original) = (bytemuck::cast_slice(&reference), bytemuck::cast_slice(&original));
+        let original = bytemuck::cast_slice(&original);
+        let present = ReferenceRows { places: bytemuck::cast_slice(&reference), volumes: &self.volume };
+        let at_start = ReferenceRows { places: original, volumes: bytemuck::cast_slice(&start) };
         self.follows.clear();
         for BodyKernel { body, .. } in &self.kernels {
-            let (rows, volumes) =
-                (world.body(*body).rows.clone(), (&self.volume[..], bytemuck::cast_slice(&start)));
-            self.follows.push(!is_original(rows, (reference, original), &self.gradient, volumes));
+            let rows = world.body(*body).rows.clone();
+            self.follows.push(!present.is_original(at_start, &self.gradient, rows));
         }
         self.weigh_control(world, original, failed);
         if self.has_followed() {

@@ -176,16 +176,10 @@ impl MeasurePairs<'_, '_> {
         for i in rows {
             match *source {
                 PairOrigin::Near { list, first, square } => {
-                    let own = OwnParticle::new(a, seen, i);
-                    let count = keep_near::<A, GHOSTS>(
-                        a,
-                        (seen, &own, i),
-                        list.row(i - first),
-                        square,
-                        &mut block.near,
-                    );
+                    let near = NearSearch { seen, own: OwnParticle::new(a, seen, i), row: i };
+                    let count = near.keep::<GHOSTS>(a, list.row(i - first), square, &mut block.near);
                     block.reserve(used, count);
-                    used = measure_near::<A, GHOSTS>(a, (seen, &own, i), count, used, block);
+                    used = near.measure::<GHOSTS>(a, count, used, block);
                 }
                 PairOrigin::Known { offsets, neighbors, columns } => {
                     let row = &neighbors[offsets[i] as usize..offsets[i + 1] as usize];
@@ -212,55 +206,58 @@ fn put(values: &mut [f64], at: usize, four: Lanes4) {
     }
 }
 
-/// Takes those candidates that are closer than the root of `square`; returns how many there are.
-#[inline(always)]
-fn keep_near<A: FourLanes, const GHOSTS: bool>(
-    a: A,
-    (seen, own, i): (&SeenParticles, &OwnParticle<A>, usize),
-    candidates: &[u32],
-    square: f64,
-    near: &mut Vec<u32>,
-) -> usize {
-    if near.len() < candidates.len() + 4 {
-        near.resize(candidates.len() + 4, 0);
-    }
-    let limit = Lanes4::splat(square);
-    let mut used = 0;
-    for n in (0..candidates.len()).step_by(4) {
-        let rows = four(candidates, n, i);
-        let (arm, _) = own.arms::<GHOSTS>(a, seen, rows);
-        let mask = a.below(arm.length_squared().lanes(), limit) & MASKS[(candidates.len() - n).min(4)];
-        if let Some(to) = near[used..].first_chunk_mut::<4>() {
-            *to = a.pack(numbers(rows), mask);
-        }
-        used += mask.count_ones() as usize;
-    }
-    used
+/// The search for what is near a particle.
+struct NearSearch<'a, A: FourLanes> {
+    seen: &'a SeenParticles,
+    own: OwnParticle<A>,
+    row: usize,
 }
 
-/// Puts those that are near and within the ellipsoids behind the bonds that are used; returns how many are
-/// used then.
-#[inline(always)]
-fn measure_near<A: FourLanes, const GHOSTS: bool>(
-    a: A,
-    (seen, own, i): (&SeenParticles, &OwnParticle<A>, usize),
-    count: usize,
-    mut used: usize,
-    block: &mut PairBlock,
-) -> usize {
-    for n in (0..count).step_by(4) {
-        let rows = four(&block.near[..count], n, i);
-        let (arm, _) = own.arms::<GHOSTS>(a, seen, rows);
-        let pairs = own.measure(a, arm, seen, rows);
-        let limit = pairs.support.squared().lanes();
-        let bits = a.below(pairs.square.lanes(), limit) & MASKS[(count - n).min(4)];
-        block.put(&pairs, bits);
-        if let Some(to) = block.neighbors[used..].first_chunk_mut::<4>() {
-            *to = a.pack(numbers(rows), bits);
+impl<A: FourLanes> NearSearch<'_, A> {
+    /// Takes those candidates that are closer than the root of `square`; returns how many there are.
+    #[inline(always)]
+    fn keep<const GHOSTS: bool>(&self, a: A, candidates: &[u32], square: f64, near: &mut Vec<u32>) -> usize {
+        if near.len() < candidates.len() + 4 {
+            near.resize(candidates.len() + 4, 0);
         }
-        used += bits.count_ones() as usize;
+        let limit = Lanes4::splat(square);
+        let mut used = 0;
+        for n in (0..candidates.len()).step_by(4) {
+            let rows = four(candidates, n, self.row);
+            let (arm, _) = self.own.arms::<GHOSTS>(a, self.seen, rows);
+            let mask = a.below(arm.length_squared().lanes(), limit) & MASKS[(candidates.len() - n).min(4)];
+            if let Some(to) = near[used..].first_chunk_mut::<4>() {
+                *to = a.pack(numbers(rows), mask);
+            }
+            used += mask.count_ones() as usize;
+        }
+        used
     }
-    used
+
+    /// Puts those that are near and within the ellipsoids behind the bonds that are used; returns how many
+    /// are used then.
+    #[inline(always)]
+    fn measure<const GHOSTS: bool>(
+        &self,
+        a: A,
+        count: usize,
+        mut used: usize,
+        block: &mut PairBlock,
+    ) -> usize {
+        for n in (0..count).step_by(4) {
+            let rows = four(&block.near[..count], n, self.row);
+            let (arm, _) = self.own.arms::<GHOSTS>(a, self.seen, rows);
+            let pairs = self.own.measure(a, arm, self.seen, rows);
+            let limit = pairs.support.squared().lanes();
+            let bits = a.below(pairs.square.lanes(), limit) & MASKS[(count - n).min(4)];
+            block.put(&pairs, bits);
+            if let Some(to) = block.neighbors[used..].first_chunk_mut::<4>() {
+                *to = a.pack(numbers(rows), bits);
+            }
+            used += bits.count_ones() as usize;
+        }
+        used
+    }
 }
 
 /// Makes the weights of distances.

@@ -54,7 +54,8 @@ impl SeenParticles {
         ghosts: &Ghosts,
         ellipsoids: &[Ellipsoid],
         support: &[f64],
-        (places, volumes): (&[DVec3], &[f64]),
+        places: &[DVec3],
+        volumes: &[f64],
     ) {
         let (count, all) = (places.len(), places.len() + ghosts.len());
         self.places.resize(all, Lanes4::ZERO);

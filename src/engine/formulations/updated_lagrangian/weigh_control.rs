@@ -30,7 +30,7 @@ impl UpdatedRows {
         control.volume.clone_from(volume);
         failed.iter().for_each(|&row| control.volume[row as usize] = 0.0);
         control.bonds.share_topology(bonds);
-        lists.begin_control((original, &control.volume), gradient, ghosts);
+        lists.begin_control(original, &control.volume, gradient, ghosts);
         let apart = kernels.iter().zip(&control.is_apart).filter(|(_, is_apart)| **is_apart);
         for (BodyKernel { body, kernel, .. }, _) in apart {
             lists.weigh_control(&world.body(*body).rows, kernel, &mut control.bonds);

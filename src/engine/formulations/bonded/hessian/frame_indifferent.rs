@@ -125,8 +125,9 @@ impl FrameIndifferent<'_> {
                 displacement: Lanes4::new(bond_force, 0.0),
             }
         });
+        let pass = ForcePass { bonds, bond_forces, plane };
         for HessianBody { rows, .. } in bodies.iter().filter(is_own) {
-            add_forces(bonds, bond_forces, rows.clone(), plane, (&mut *stresses, &mut *self_force));
+            pass.add(rows, &mut stresses[rows.clone()], &mut self_force[rows.clone()]);
         }
         Ok(())
     }
@@ -254,25 +255,27 @@ impl PlaneOrSpace for ResidualBlock<'_, '_> {
 }
 
 /// Second pass: the stress from which the force follows.
-fn add_forces(
-    bonds: &Bonds,
-    bond_forces: &[PackedParticle],
-    rows: Range<usize>,
-    plane: bool,
-    (stresses, self_force): (&mut [CorrectedStress], &mut [DVec3]),
-) {
-    type Rows<'a> = (&'a mut [CorrectedStress], &'a mut [DVec3]);
-    let own: Rows<'_> = (&mut stresses[rows.clone()], &mut self_force[rows.clone()]);
-    for_each_own_block(own, &mut Vec::new(), &|first, (stresses, self_force): Rows<'_>| {
-        let first = rows.start + first;
-        run_hot_in(plane, ForceBlock { bonds, bond_forces, first, stresses, self_force });
-    });
-}
-
-struct ForceBlock<'a> {
+struct ForcePass<'a> {
     bonds: &'a Bonds,
     /// The force along its bonds of every row, at its place.
     bond_forces: &'a [PackedParticle],
+    plane: bool,
+}
+
+impl ForcePass<'_> {
+    /// Adds to the stresses and self forces of the particles of some rows.
+    fn add(&self, rows: &Range<usize>, stresses: &mut [CorrectedStress], self_force: &mut [DVec3]) {
+        type Rows<'a> = (&'a mut [CorrectedStress], &'a mut [DVec3]);
+        let own: Rows<'_> = (stresses, self_force);
+        for_each_own_block(own, &mut Vec::new(), &|first, (stresses, self_force): Rows<'_>| {
+            let first = rows.start + first;
+            run_hot_in(self.plane, ForceBlock { pass: self, first, stresses, self_force });
+        });
+    }
+}
+
+struct ForceBlock<'a> {
+    pass: &'a ForcePass<'a>,
     /// First row of the block in the phase.
     first: usize,
     stresses: &'a mut [CorrectedStress],
@@ -282,7 +285,7 @@ struct ForceBlock<'a> {
 impl PlaneOrSpace for ForceBlock<'_> {
     #[inline(always)]
     fn run<A: FourLanes, const D: usize>(self, a: A) {
-        let Self { bonds, bond_forces, first, stresses, self_force } = self;
+        let Self { pass: ForcePass { bonds, bond_forces, .. }, first, stresses, self_force } = self;
         for (k, (stress, self_force)) in stresses.iter_mut().zip(self_force).enumerate() {
             let i = first + k;
             if !bond_forces[i].is_present() {

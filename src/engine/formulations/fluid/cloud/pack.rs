@@ -107,7 +107,7 @@ impl GroupRows<'_> {
         let moved = {
             let (x, v) = (view.read_own::<Position>()?, view.read_own::<Velocity>()?);
             let (volume, removed) = (view.read_own::<ReferenceVolume>()?, view.read_own::<Removed>()?);
-            let own = self.boundary_rows((&x, &v), (&removed, &volume), 0..self.group.cloud.len());
+            let own = self.boundary_rows(&x, &v, &removed, &volume, 0..self.group.cloud.len());
             let units = own.3;
             sum_over_own_blocks((own.0, own.1, own.2), &|_, (common, volume, packed): WithVolume<'_>| {
                 run_hot(PackBoundary(common, volume, packed, units))
@@ -117,7 +117,7 @@ impl GroupRows<'_> {
             let (x, v) = (view.read::<Position>()?, view.read::<Velocity>()?);
             let (volume, removed) = (view.read::<ReferenceVolume>()?, view.read::<Removed>()?);
             for part in others_rows(&(0..self.group.cloud.len())) {
-                let (common, volume, packed, units) = self.boundary_rows((&x, &v), (&removed, &volume), part);
+                let (common, volume, packed, units) = self.boundary_rows(&x, &v, &removed, &volume, part);
                 sum_over_blocks((common, volume, packed), &|_, (common, volume, packed): WithVolume<'_>| {
                     run_hot(PackBoundary(common, volume, packed, units))
                 });
@@ -130,8 +130,10 @@ impl GroupRows<'_> {
     #[allow(clippy::type_complexity)]
     fn boundary_rows<'r>(
         &'r mut self,
-        (x, v): (&'r [Position], &'r [Velocity]),
-        (removed, volume): (&'r [Removed], &'r [ReferenceVolume]),
+        x: &'r [Position],
+        v: &'r [Velocity],
+        removed: &'r [Removed],
+        volume: &'r [ReferenceVolume],
         part: Range<usize>,
     ) -> (Common<'r>, &'r [ReferenceVolume], Option<&'r mut [Packed]>, Option<&'r Units>) {
         let first = self.group.rows.start;

@@ -71,7 +71,7 @@ impl<const R: usize, const S: usize, P: RowPass<R, S>> BlockLoop for RowPassBloc
                     pass.add(&pairs, &of_i, &of_j, &mut sums);
                 }
             }
-            put(pass, rows, &sums, (first, out));
+            put(pass, rows, &sums, first, out);
         }
     }
 }
@@ -83,7 +83,8 @@ fn put<A: EightLanes, const R: usize, const S: usize, P: RowPass<R, S>>(
     pass: &P,
     rows: &Rows,
     sums: &[Vector<A>; S],
-    (first, out): (usize, &mut [[DVec3; S]]),
+    first: usize,
+    out: &mut [[DVec3; S]],
 ) {
     for lane in 0..EIGHT {
         let row = rows[lane] as usize;

@@ -94,7 +94,8 @@ impl Drift {
     /// built. The first `fluid` particles are those of the fluid; `own` are the rows that this rank looks at.
     pub fn remaining_skin(
         &mut self,
-        (records, own): (&[FlowParticle], &[Range<usize>]),
+        records: &[FlowParticle],
+        own: &[Range<usize>],
         fluid: usize,
         skins: Skins,
     ) -> f64 {
@@ -236,8 +237,7 @@ mod tests {
                     .map(|(k, x)| if k < 700 { *x + t * flow(*x) } else { *x })
                     .collect();
                 let is_small =
-                    drift.remaining_skin((&records(&now), std::slice::from_ref(&(0..820))), 700, SKINS)
-                        >= 0.0;
+                    drift.remaining_skin(&records(&now), std::slice::from_ref(&(0..820)), 700, SKINS) >= 0.0;
                 let misses = misses(&then, &now, 700, &periodic);
                 assert!(!(is_small && misses), "{n}");
                 small += i32::from(is_small);
@@ -254,7 +254,8 @@ mod tests {
         drift.sort(&then, 2.0 * SKINS.support, &Periodic::NONE);
         let moved = |by: DVec3| -> Vec<DVec3> { then.iter().map(|x| *x + by).collect() };
         let left = drift.remaining_skin(
-            (&records(&moved(DVec3::new(70.0, -3.0, 0.1))), std::slice::from_ref(&(0..700))),
+            &records(&moved(DVec3::new(70.0, -3.0, 0.1))),
+            std::slice::from_ref(&(0..700)),
             700,
             SKINS,
         );
@@ -262,9 +263,7 @@ mod tests {
         for wrong in [f64::NAN, f64::INFINITY] {
             let mut now = moved(DVec3::ZERO);
             now[5].x = wrong;
-            assert!(
-                drift.remaining_skin((&records(&now), std::slice::from_ref(&(0..700))), 700, SKINS) < 0.0
-            );
+            assert!(drift.remaining_skin(&records(&now), std::slice::from_ref(&(0..700)), 700, SKINS) < 0.0);
         }
     }
 }

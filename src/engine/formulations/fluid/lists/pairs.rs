@@ -116,7 +116,7 @@ impl FlowPairs {
         self.remaining_skin -= moved.farthest(moved);
         if self.remaining_skin <= CERTAIN * self.skins.support {
             self.find_own(fluid);
-            self.remaining_skin = self.drift.remaining_skin((records, &self.own), fluid, self.skins);
+            self.remaining_skin = self.drift.remaining_skin(records, &self.own, fluid, self.skins);
         }
         self.remaining_skin < 0.0
     }
@@ -156,7 +156,10 @@ impl FlowPairs {
             let ends = &self.groups;
             let sources = ListSources {
                 positions,
+                groups: ends,
                 fluids: &ends[..ends.partition_point(|&end| end as usize <= fluid)],
+                walls: &self.walls,
+                boundary: &self.boundary,
                 support,
                 skin,
                 plane: self.plane,
@@ -164,8 +167,7 @@ impl FlowPairs {
                 sides: hides,
                 all_boundaries: !self.gaps.particles.is_empty(),
             };
-            let near_boundaries = (&self.walls, &self.boundary);
-            lists.build(&sources, (&mut self.search, &self.groups), near_boundaries)?;
+            lists.build(&sources, &mut self.search)?;
         }
         // The particles may have moved already: those of an interrupted run have.
         self.remaining_skin = f64::NEG_INFINITY;

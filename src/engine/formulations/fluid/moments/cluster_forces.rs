@@ -25,6 +25,14 @@ pub struct ClusterForces<const N: usize> {
     shifts: Vec<MomentShift<N>>,
 }
 
+/// The clusters of the particles of a body.
+#[derive(Clone, Copy)]
+pub struct BodyClusters<'a> {
+    pub cloud: &'a FlowCloud,
+    pub group: &'a Group,
+    pub near: &'a Neighborhood,
+}
+
 /// Mean place of a cluster, and B_w of each moment.
 #[derive(Clone, Copy, Debug)]
 struct MomentShift<const N: usize> {
@@ -44,9 +52,7 @@ impl<const N: usize> ClusterForces<N> {
     /// Takes the moments of the particles of a body, N m, of which the first is that of all of the force.
     pub fn set(
         &mut self,
-        cloud: &FlowCloud,
-        group: &Group,
-        near: &Neighborhood,
+        BodyClusters { cloud, group, near }: BodyClusters<'_>,
         moments: impl Fn(usize) -> [DMat3; N] + Sync,
     ) {
         let (records, periodic) = (&cloud.records[group.cloud.clone()], cloud.pairs.periodic());
@@ -73,10 +79,9 @@ impl<const N: usize> ClusterForces<N> {
     /// Adds the forces of the first moment to the whole, and those of the last to one of its parts.
     pub fn add(
         &self,
-        cloud: &FlowCloud,
-        group: &Group,
-        near: &Neighborhood,
-        (total, parts): (&mut [Force], &mut [DVec3]),
+        BodyClusters { cloud, group, near }: BodyClusters<'_>,
+        total: &mut [Force],
+        parts: &mut [DVec3],
         part: usize,
     ) {
         let (records, periodic) = (&cloud.records[group.cloud.clone()], cloud.pairs.periodic());

@@ -12,7 +12,7 @@ use std::ops::Range;
 
 use glam::{DMat3, DVec3};
 
-use super::cluster_forces::ClusterForces;
+use super::cluster_forces::{BodyClusters, ClusterForces};
 use crate::formulations::fluid::cloud::{FlowCloud, Group, NearPairs, RowPass, RowSums};
 use crate::formulations::fluid::lanes::{Axial, pack_axial};
 use crate::parallel::{Arithmetic, Vector};
@@ -51,8 +51,9 @@ impl FrictionMoments {
         let pass = MomentOn { cloud, viscosities: cloud.viscosities.of(group) };
         cloud.for_each_row(group.cloud.start, &mut self.moments, &mut self.sums, &pass);
         let moments = &self.moments;
-        self.forces.set(cloud, group, near, |k| [moments[k].first]);
-        self.forces.add(cloud, group, near, (total, parts), FRICTION);
+        let clusters = BodyClusters { cloud, group, near };
+        self.forces.set(clusters, |k| [moments[k].first]);
+        self.forces.add(clusters, total, parts, FRICTION);
     }
 
     /// Adds to `drag` how fast the friction on each particle grows with its velocity, kg/s: the fluid sees

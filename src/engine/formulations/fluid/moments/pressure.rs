@@ -16,7 +16,7 @@ use std::ops::Range;
 
 use glam::{DMat3, DVec3};
 
-use super::cluster_forces::ClusterForces;
+use super::cluster_forces::{BodyClusters, ClusterForces};
 use crate::correction::{add_moment, moment_of};
 use crate::formulations::fluid::cloud::{FlowCloud, Group, NearPairs, RowPass, RowSums};
 use crate::parallel::{Arithmetic, Vector};
@@ -54,8 +54,9 @@ impl PressureMoments {
         let pass = PressureMomentOn { cloud };
         cloud.for_each_row(group.cloud.start, &mut self.moments, &mut self.sums, &pass);
         let moments = &self.moments;
-        self.forces.set(cloud, group, near, |k| [moments[k].whole, moments[k].of_boundary]);
-        self.forces.add(cloud, group, near, (total, parts), OF_BOUNDARY);
+        let clusters = BodyClusters { cloud, group, near };
+        self.forces.set(clusters, |k| [moments[k].whole, moments[k].of_boundary]);
+        self.forces.add(clusters, total, parts, OF_BOUNDARY);
     }
 }
 

@@ -88,12 +88,11 @@ impl CompressionRows<'_> {
         for (k, out) in self.out.iter_mut().enumerate() {
             let i = self.first + k;
             let own = OwnRecord::<D>::new(&records[i]);
-            let pairs = ListPairs { cloud: self.cloud, kernel, own, back: self.back };
+            let mut pairs = ListPairs { cloud: self.cloud, kernel, own, back: self.back, batch: &mut batch };
             let mut near = self.near.row(k);
             let mut least = Lanes4::splat(f64::INFINITY);
-            let sum = pairs.add::<A, P>(a, lists.fluid.row(i), (&mut near, &mut batch), Lanes4::ZERO, None);
-            let walls = lists.walls.row(i);
-            let sum = pairs.add::<A, P>(a, walls, (&mut near, &mut batch), sum, Some(&mut least));
+            let sum = pairs.add::<A, P>(a, lists.fluid.row(i), &mut near, Lanes4::ZERO, None);
+            let sum = pairs.add::<A, P>(a, lists.walls.row(i), &mut near, sum, Some(&mut least));
             near.close();
             self.is_close[k] = (a.below(least, reach) != 0).into();
             *out = a.scale(kernel.weight_scale(), sum).sum();
@@ -107,15 +106,16 @@ struct ListPairs<'a, const D: usize> {
     kernel: FluidKernel,
     own: OwnRecord<D>,
     back: f64,
+    batch: &'a mut Batch,
 }
 
 impl<const D: usize> ListPairs<'_, D> {
     #[inline(always)]
     fn add<A: FourLanes, const P: bool>(
-        &self,
+        &mut self,
         a: A,
         row: &[u32],
-        (near, batch): (&mut NearRow<'_>, &mut Batch),
+        near: &mut NearRow<'_>,
         mut sum: Lanes4,
         mut least: Option<&mut Lanes4>,
     ) -> Lanes4 {
@@ -125,10 +125,10 @@ impl<const D: usize> ListPairs<'_, D> {
             let end = (done + BATCH).min(fours.len());
             for k in done..end {
                 let (square, factor) = self.four::<A, P>(a, fours[k], 4, near, least.as_deref_mut());
-                batch.put(k, square, factor);
+                self.batch.put(k, square, factor);
             }
             for k in done..end {
-                let (square, factor) = batch.get(k);
+                let (square, factor) = self.batch.get(k);
                 sum = a.times_add(self.kernel.shapes(a, a.sqrt(square)), factor, sum);
             }
             done = end;

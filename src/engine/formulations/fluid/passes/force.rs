@@ -60,8 +60,8 @@ impl Run for FlowForce {
             let total = &mut force[group.rows.clone()];
             let terms = self.terms.as_mut().filter(|terms| terms.act_on(group.body));
             match terms {
-                Some(terms) => cloud.force_with(group, terms, step, (total, forces))?,
-                None => cloud.own_force(group, !flows, (total, forces)),
+                Some(terms) => cloud.force_with(group, terms, step, total, forces)?,
+                None => cloud.own_force(group, !flows, total, forces),
             }
             self.moments.add(&cloud, group, total, forces);
             cloud.repel(group, total, forces);

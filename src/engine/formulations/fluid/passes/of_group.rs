@@ -26,7 +26,7 @@ impl FlowCloud {
         total: &mut [Force],
         parts: &mut [DVec3],
     ) {
-        self.own_force(group, false, (&mut *total, &mut *parts));
+        self.own_force(group, false, total, parts);
         share_rows(total);
         share_wide_rows(parts, PARTS);
     }
@@ -37,7 +37,8 @@ impl FlowCloud {
         &self,
         group: &Group,
         adds: bool,
-        (total, parts): (&mut [Force], &mut [DVec3]),
+        total: &mut [Force],
+        parts: &mut [DVec3],
     ) {
         match self.blocks_of(group) {
             Some(blocks) => BlockForce { cloud: self, group, blocks, adds }.run(total, parts),
@@ -51,7 +52,8 @@ impl FlowCloud {
         group: &Group,
         terms: &mut PhaseTerms,
         step: &mut Step<'_>,
-        (total, parts): (&mut [Force], &mut [DVec3]),
+        total: &mut [Force],
+        parts: &mut [DVec3],
     ) -> Result<(), StepError> {
         match self.blocks_of(group) {
             Some(blocks) => {

@@ -37,7 +37,8 @@ impl<const D: usize> Forces<D> {
         &mut self,
         a: A,
         FourPairs { current, velocity, weight, volume_j, kept: pressure, .. }: &FourPairs,
-        (viscosity, turning): (f64, &[Lanes4; D]),
+        viscosity: f64,
+        turning: &[Lanes4; D],
     ) {
         let weight = a.times(*weight, *volume_j);
         let pressure = a.times(weight, *pressure);
@@ -272,7 +273,7 @@ impl<const D: usize> PairsOfRow<'_, D> {
                 x.copy_from_slice(&four.current.vector[..D]);
                 turning = self.turning(a, spin, as_rows(rows[k]), &x);
             }
-            forces.add_fluid::<A, FRICTION>(a, four, (self.viscosity, &turning));
+            forces.add_fluid::<A, FRICTION>(a, four, self.viscosity, &turning);
         }
     }
 }

@@ -124,7 +124,7 @@ impl WallPressureRows<'_> {
             for n in 0..cloud.groups.len() {
                 let Some(state) = cloud.groups[n].fluid().filter(|_| !rest.is_empty()) else { break };
                 for chunk in take_until(&mut rest, cloud.groups[n].cloud.end).chunks(4) {
-                    sums.add::<A, P, STICKS>(a, cloud, (&own, state), chunk);
+                    sums.add::<A, P, STICKS>(a, cloud, &own, state, chunk);
                 }
             }
             if !list.is_empty() {
@@ -177,7 +177,8 @@ impl<const D: usize> SumsBeside<D> {
         &mut self,
         a: A,
         cloud: &FlowCloud,
-        (own, state): (&OwnRecord<D>, &FluidState),
+        own: &OwnRecord<D>,
+        state: &FluidState,
         chunk: &[u32],
     ) {
         let rows = filled_up(chunk);

@@ -19,6 +19,7 @@ pub struct WallState {
     pub beside: Vec<FluidBeside>,
 }
 
+type MovedRows<'a> = (&'a mut [FlowParticle], &'a [FluidBeside]);
 type Rows<'a> = (&'a mut [FlowParticle], &'a mut [Pressure], &'a mut [PreviousVelocity], &'a [FluidBeside]);
 
 impl Run for WallState {
@@ -46,9 +47,10 @@ impl Run for WallState {
         for group in groups {
             let Role::Boundary(surface) = &group.role else { continue };
             let beside = &self.beside[group.cloud.start - *fluid..group.cloud.end - *fluid];
+            let boundary = BoundaryStep { surface, gravity: self.gravity, dt: step.clock.dt };
             if surface.moved {
                 let rows = (&mut records[group.cloud.clone()], beside);
-                for_each_block(rows, &mut Vec::new(), &|_, rows| apply_to_solid(surface, self.gravity, rows));
+                for_each_block(rows, &mut Vec::new(), &|_, rows| boundary.apply_to_solid(rows));
                 continue;
             }
             let view = step.world.phase(group.phase);
@@ -63,8 +65,7 @@ impl Run for WallState {
             let rows = group.rows.clone();
             let slices: Rows<'_> =
                 (&mut records[group.cloud.clone()], &mut pressure[rows.clone()], &mut previous[rows], beside);
-            let (gravity, dt) = (self.gravity, step.clock.dt);
-            let body = |_, rows: Rows<'_>| apply(surface, gravity, dt, rows);
+            let body = |_, rows: Rows<'_>| boundary.apply(rows);
             match is_local {
                 true => for_each_own_block(slices, &mut Vec::new(), &body),
                 false => for_each_block(slices, &mut Vec::new(), &body),
@@ -90,43 +91,45 @@ fn pack(cloud: &mut FlowCloud) {
     cloud.share_boundaries();
 }
 
-fn apply(
-    surface: &BoundarySurface,
+/// A step of the particles of a boundary.
+struct BoundaryStep<'a> {
+    surface: &'a BoundarySurface,
     gravity: DVec3,
     dt: f64,
-    (records, pressure, previous, beside): Rows<'_>,
-) {
-    for (k, record) in records.iter_mut().enumerate() {
-        let v = record.velocity();
-        let acceleration = if dt > 0.0 { (v - previous[k].0) / dt } else { DVec3::ZERO };
-        previous[k] = PreviousVelocity(v);
-        let fluid = &beside[k];
-        let mut p = fluid.pressure - (gravity - acceleration).dot(fluid.moment);
-        if !surface.suction {
-            p = p.max(0.0);
-        }
-        pressure[k] = Pressure(p);
-        // Halfway between this velocity and that of the fluid lies the velocity of the surface.
-        let seen = if surface.no_slip { v + 2.0 * surface.velocity - fluid.velocity } else { v };
-        record.motion = Lanes4::new(seen, p);
-    }
 }
 
-/// The acceleration of a body that the fluid moves is left out: it would act on itself one step later, as a
-/// mass that is added explicitly, and a light body would not stand it. What that lacks falls with the
-/// spacing.
-fn apply_to_solid(
-    surface: &BoundarySurface,
-    gravity: DVec3,
-    (records, beside): (&mut [FlowParticle], &[FluidBeside]),
-) {
-    for (record, fluid) in records.iter_mut().zip(beside) {
-        let v = record.velocity();
-        let mut p = fluid.pressure - gravity.dot(fluid.moment);
-        if !surface.suction {
-            p = p.max(0.0);
+impl BoundaryStep<'_> {
+    fn apply(&self, (records, pressure, previous, beside): Rows<'_>) {
+        let Self { surface, gravity, dt } = *self;
+        for (k, record) in records.iter_mut().enumerate() {
+            let v = record.velocity();
+            let acceleration = if dt > 0.0 { (v - previous[k].0) / dt } else { DVec3::ZERO };
+            previous[k] = PreviousVelocity(v);
+            let fluid = &beside[k];
+            let mut p = fluid.pressure - (gravity - acceleration).dot(fluid.moment);
+            if !surface.suction {
+                p = p.max(0.0);
+            }
+            pressure[k] = Pressure(p);
+            // Halfway between this velocity and that of the fluid lies the velocity of the surface.
+            let seen = if surface.no_slip { v + 2.0 * surface.velocity - fluid.velocity } else { v };
+            record.motion = Lanes4::new(seen, p);
         }
-        let seen = if surface.no_slip { v - fluid.velocity } else { v };
-        record.motion = Lanes4::new(seen, p);
+    }
+
+    /// The acceleration of a body that the fluid moves is left out: it would act on itself one step later, as
+    /// a mass that is added explicitly, and a light body would not stand it. What that lacks falls with the
+    /// spacing.
+    fn apply_to_solid(&self, (records, beside): MovedRows<'_>) {
+        let Self { surface, gravity, .. } = *self;
+        for (record, fluid) in records.iter_mut().zip(beside) {
+            let v = record.velocity();
+            let mut p = fluid.pressure - gravity.dot(fluid.moment);
+            if !surface.suction {
+                p = p.max(0.0);
+            }
+            let seen = if surface.no_slip { v - fluid.velocity } else { v };
+            record.motion = Lanes4::new(seen, p);
+        }
     }
 }

@@ -48,8 +48,14 @@ pub struct BlockLists {
 pub struct ListSources<'a> {
     /// Positions of all particles, m; the search has sorted those of fluids.
     pub positions: &'a [DVec3],
+    /// Where each body ends, fluids first.
+    pub groups: &'a [u32],
     /// Where each fluid ends.
     pub fluids: &'a [u32],
+    /// The neighbours of each fluid particle among the boundary particles.
+    pub walls: &'a NeighborList,
+    /// Those of each boundary particle among the fluid particles.
+    pub boundary: &'a NeighborList,
     pub support: f64,
     pub skin: f64,
     /// Whether all particles have one z.
@@ -86,17 +92,14 @@ impl BlockLists {
         (self.fluid.lanes(block), &self.seen_walls[self.walls.range(block)])
     }
 
-    /// Builds blocks and lists; `groups` are the ends of all bodies, `walls` the neighbours of each fluid
-    /// particle among the boundary particles, `boundary` those of each boundary particle among the fluid
-    /// particles.
+    /// Builds blocks and lists.
     pub fn build(
         &mut self,
         sources: &ListSources<'_>,
-        (search, groups): (&mut NeighborSearch, &[u32]),
-        (walls, boundary): (&NeighborList, &NeighborList),
+        search: &mut NeighborSearch,
     ) -> Result<(), NeighborError> {
-        let ListSources { positions, fluids, support, skin, plane, periodic, ref sides, all_boundaries } =
-            *sources;
+        let ListSources { positions, groups, fluids, walls, boundary, .. } = *sources;
+        let ListSources { support, skin, plane, periodic, ref sides, all_boundaries, .. } = *sources;
         let Self {
             table,
             fluid,
@@ -126,9 +129,9 @@ impl BlockLists {
             groups,
         };
         search.of_boxes(boxes, skin, periodic, candidates)?;
-        of_blocks.join((of_fluids, |block| others.is_own(block)), (walls, 0), joined);
+        of_blocks.join(of_fluids, |block| others.is_own(block), walls, 0, joined);
         let is_own = |block| others.is_own(blocks + block);
-        of_boundaries.join((of_others, is_own), (boundary, particles), joined);
+        of_boundaries.join(of_others, is_own, boundary, particles, joined);
         pack_places(places, &positions[..particles as usize], units);
         fluid.make_room(&[candidates]);
         if sides.is_some() {

@@ -144,17 +144,17 @@ impl<K: PairShape, const HIDDEN: bool> BlockLoop for CompressionBlocks<'_, K, HI
             if HIDDEN {
                 let (seen, seen_walls) = lists.seen(block);
                 for (&j, &seen) in fluid.iter().zip(seen) {
-                    sums.add::<A, HIDDEN>(a, (j, seen), &mut near);
+                    sums.add::<A, HIDDEN>(a, j, seen, &mut near);
                 }
                 for (&j, &seen) in walls.iter().zip(seen_walls) {
-                    least = a.smaller(sums.add::<A, HIDDEN>(a, (j, seen), &mut near), least);
+                    least = a.smaller(sums.add::<A, HIDDEN>(a, j, seen, &mut near), least);
                 }
             } else {
                 for &j in fluid {
-                    sums.add::<A, HIDDEN>(a, (j, ALL), &mut near);
+                    sums.add::<A, HIDDEN>(a, j, ALL, &mut near);
                 }
                 for &j in walls {
-                    least = a.smaller(sums.add::<A, HIDDEN>(a, (j, ALL), &mut near), least);
+                    least = a.smaller(sums.add::<A, HIDDEN>(a, j, ALL, &mut near), least);
                 }
             }
             near.close();
@@ -186,7 +186,8 @@ impl<K: PairShape> RateSums<'_, K> {
     fn add<A: EightLanes, const HIDDEN: bool>(
         &mut self,
         a: A,
-        (j, seen): (u32, u8),
+        j: u32,
+        seen: u8,
         near: &mut NearRow<'_>,
     ) -> Lanes8 {
         let other = &self.packed[j as usize];

@@ -9,7 +9,7 @@ use super::land::{Landing, land};
 use super::pairs::{BlockForces, Chunk, PairsOfBlock};
 use crate::formulations::fluid::cloud::{FlowCloud, Group, take_until};
 use crate::formulations::fluid::lanes::{KernelLoop, PairShape};
-use crate::formulations::fluid::lists::blocks::{Blocks, OwnBlock, Packed};
+use crate::formulations::fluid::lists::blocks::Blocks;
 use crate::pair::{AllSums, BlockPairs, BoundTerms, CHUNK, PhaseTerms, RateBounds, TermRows, TermSums};
 use crate::parallel::{BlockLoop, EightLanes, Split, for_each_own_block_in_tasks, run_blocks_on};
 use crate::schedule::{Step, StepError};
@@ -113,9 +113,8 @@ impl<K: PairShape> BlockLoop for ForceBlocks<'_, K> {
     fn run<A: EightLanes>(self, a: A) -> RateBounds {
         let Self { pass: BlockForce { cloud, group, blocks, adds }, terms, kernel, first, mut rows, pairs } =
             self;
-        let Blocks { lists, units, packed, near, hides } = blocks;
+        let Blocks { lists, near, hides, .. } = blocks;
         let count = rows.written.terms();
-        let packed: &[Packed] = packed;
         let (groups, viscosities) = (&cloud.groups[..], cloud.viscosities.of(group));
         let factor = cloud.viscosities.factor();
         let flows = group.fluid().is_some();
@@ -123,9 +122,8 @@ impl<K: PairShape> BlockLoop for ForceBlocks<'_, K> {
         let mut of_terms: AllSums = Default::default();
         for block in lists.table.of_rows(&(first..first + rows.rows())) {
             let particles = &lists.table.rows[block];
-            let own = OwnBlock::new(packed, particles);
-            let mut of_block = PairsOfBlock::new(a, (packed, kernel, units), own, cloud, particles);
-            pairs.begin(*particles, own.volume, cloud.kernel.support);
+            let mut of_block = PairsOfBlock::new(a, blocks, kernel, cloud, particles);
+            pairs.begin(*particles, of_block.own.volume, cloud.kernel.support);
             of_terms[..count].fill(TermSums::default());
             let mut sums = BlockForces::ZERO;
             let mut rest = near.row(block);

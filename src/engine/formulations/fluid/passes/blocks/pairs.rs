@@ -10,7 +10,7 @@ use glam::DVec3;
 use super::super::pair_sums::Between;
 use crate::formulations::fluid::cloud::{FlowCloud, NONE, PLAIN, WITH_SPIN};
 use crate::formulations::fluid::lanes::PairShape;
-use crate::formulations::fluid::lists::blocks::{Other, OwnBlock, Packed, Rows, SEEN, Units, dot};
+use crate::formulations::fluid::lists::blocks::{Blocks, Other, OwnBlock, Packed, Rows, SEEN, dot};
 use crate::pair::EightPairs;
 use crate::parallel::{EIGHT, EightLanes, Lanes8};
 
@@ -19,7 +19,8 @@ pub struct PairsOfBlock<'a, K> {
     packed: &'a [Packed],
     kernel: K,
     unit: [Lanes8; 3],
-    own: OwnBlock,
+    /// The particles of the block.
+    pub own: OwnBlock,
     cloud: &'a FlowCloud,
     /// Spins of the particles, 1/s; zero where friction goes without.
     spin: [Lanes8; 3],
@@ -54,6 +55,17 @@ pub struct Chunk<'c> {
     pub between: Between,
 }
 
+/// A neighbour of the particles of a block with which they have friction.
+struct RubbingPair<'x> {
+    /// Its row in the cloud.
+    row: u32,
+    /// Share of the spin of the particle in that of the pair; the rest is that of the neighbour.
+    share: f64,
+    x: &'x [Lanes8; 3],
+    v: &'x [Lanes8; 3],
+    weight: Lanes8,
+}
+
 /// Values of [`Between`].
 const FLUIDS: u8 = 0;
 const AND_BOUNDARY: u8 = 1;
@@ -63,11 +75,13 @@ impl<'a, K: PairShape> PairsOfBlock<'a, K> {
     #[inline(always)]
     pub fn new<A: EightLanes>(
         a: A,
-        (packed, kernel, units): (&'a [Packed], K, &'a Units),
-        own: OwnBlock,
+        blocks: &'a Blocks,
+        kernel: K,
         cloud: &'a FlowCloud,
         rows: &Rows,
     ) -> Self {
+        let Blocks { packed, units, .. } = blocks;
+        let own = OwnBlock::new(packed, rows);
         let unit = [a.splat(units.length.x), a.splat(units.length.y), a.splat(units.length.z)];
         let mut spin = [Lanes8::ZERO; 3];
         if cloud.viscosities.spin {
@@ -159,7 +173,8 @@ impl<'a, K: PairShape> PairsOfBlock<'a, K> {
                     wall[axis] = a.times_add(of_wall, x[axis], wall[axis]);
                 }
             }
-            self.rub::<A, FRICTION>(a, (row[n], share), (&x, &v), weight, &mut viscous);
+            let rubbing = RubbingPair { row: row[n], share, x: &x, v: &v, weight };
+            self.rub::<A, FRICTION>(a, rubbing, &mut viscous);
         }
         *sums = BlockForces { pressure, viscous, wall };
     }
@@ -172,25 +187,18 @@ impl<'a, K: PairShape> PairsOfBlock<'a, K> {
         }
     }
 
-    /// Adds the friction with a neighbour: `mu w (v_ij - omega_ij x x_ij)`, where `share` is that of the spin
-    /// of the particle in that of the pair, the rest that of the neighbour.
+    /// Adds the friction with a neighbour: `mu w (v_ij - omega_ij x x_ij)`.
     #[inline(always)]
-    fn rub<A: EightLanes, const FRICTION: u8>(
-        &self,
-        a: A,
-        (j, share): (u32, f64),
-        (x, v): (&[Lanes8; 3], &[Lanes8; 3]),
-        weight: Lanes8,
-        viscous: &mut [Lanes8; 3],
-    ) {
+    fn rub<A: EightLanes, const FRICTION: u8>(&self, a: A, pair: RubbingPair<'_>, viscous: &mut [Lanes8; 3]) {
         if FRICTION == NONE {
             return;
         }
+        let RubbingPair { row, share, x, v, weight } = pair;
         let friction = a.scale(self.viscosity, weight);
         let mut relative = *v;
         if FRICTION == WITH_SPIN {
             let others =
-                if share < 1.0 { self.cloud.spins[j as usize].xyz() * (1.0 - share) } else { DVec3::ZERO };
+                if share < 1.0 { self.cloud.spins[row as usize].xyz() * (1.0 - share) } else { DVec3::ZERO };
             let mut omega = self.spin;
             for axis in 0..3 {
                 omega[axis] = a.scale_add(share, self.spin[axis], a.splat(others[axis]));
