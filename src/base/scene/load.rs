@@ -18,7 +18,7 @@ pub fn load(path: &Path, overrides: &[(String, String)]) -> Result<(Scene, Sourc
     load_checked(path, overrides, &|_| Vec::new())
 }
 
-/// [`load`] with what is wrong with the scene by a `check` of its own, such as one of its names.
+/// [`load`] with the problems that another check finds, such as one of names.
 ///
 /// # Errors
 /// Those of [`load`] and those that the check finds; all that is wrong at once.
@@ -63,7 +63,7 @@ pub fn parse(source: Source) -> Result<(Scene, Source), SceneError> {
     parse_with(source, &[])
 }
 
-/// [`parse_with`] with what is wrong with the scene by a `check` of its own, such as one of its names.
+/// [`parse_with`] with the problems that another check finds, such as one of names.
 ///
 /// # Errors
 /// Those of [`parse_with`] and those that the check finds; all that is wrong at once.

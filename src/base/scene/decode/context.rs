@@ -1,4 +1,4 @@
-//! What the reading of a tree has found so far.
+//! Problems found while a tree is read.
 
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeSet;

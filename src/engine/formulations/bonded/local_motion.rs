@@ -10,7 +10,7 @@ use crate::solids::{CorrectedStress, LocalFit, LocalMotion, RateSum};
 use crate::symmetry::Ghosts;
 use crate::world::{Mobility, Velocity};
 
-/// What the particles of a phase see of each other.
+/// Neighbours of the particles of a phase.
 pub(in crate::formulations) struct BondedMotion<'a> {
     pub bonds: &'a Bonds,
     /// Places and volumes in the configuration of the weights.

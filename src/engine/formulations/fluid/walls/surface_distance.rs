@@ -73,7 +73,7 @@ pub struct BoundaryView<'a> {
 /// The face of a boundary before a fluid particle.
 pub struct FaceBefore {
     pub place: PlaceInBody,
-    /// What it counts for: one on the face, zero where it is none.
+    /// Weight: one on the face, zero at [`BoundaryShape::before`].
     pub nearness: f64,
     /// From the face to the particle.
     pub normal: DVec3,

@@ -141,7 +141,8 @@ impl WallEnds {
     }
 }
 
-/// What of the way `along` a wall from particle `i` is clear of it; none where the particle is not beside it.
+/// Part of the way `along` a wall from particle `i` that is clear of it; none where the particle is not
+/// beside it.
 fn open_way(seen: &BoundaryView<'_>, cloud: &FlowCloud, i: usize, along: DVec3) -> Option<f64> {
     let place = seen.place(cloud, i)?;
     let nearest = (1..=WAY)
