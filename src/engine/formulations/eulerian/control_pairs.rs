@@ -98,7 +98,7 @@ impl ControlPairs<'_> {
         let (curvature_fours, curvature_rest) = curvatures.as_chunks::<4>();
         for n in 0..fours.len() {
             let kernel =
-                FourKernel { weight: Lanes4(weight_fours[n]), curvature: Lanes4(curvature_fours[n]) };
+                FourKernel { weight: Lanes4(weight_fours[n]), curvature: in_double(curvature_fours[n]) };
             self.add(a, &own, fours[n], kernel, &mut sums);
         }
         if !rest.is_empty() {
@@ -107,7 +107,8 @@ impl ControlPairs<'_> {
             let mut kernel = FourKernel { weight: Lanes4::ZERO, curvature: Lanes4::ZERO };
             for lane in 0..rest.len() {
                 four[lane] = rest[lane];
-                (kernel.weight.0[lane], kernel.curvature.0[lane]) = (weight_rest[lane], curvature_rest[lane]);
+                (kernel.weight.0[lane], kernel.curvature.0[lane]) =
+                    (weight_rest[lane], f64::from(curvature_rest[lane]));
             }
             self.add(a, &own, four, kernel, &mut sums);
         }
@@ -205,4 +206,10 @@ impl ControlPairs<'_> {
         let with_before = error * ((one - before_part) * along + before_part * own_square);
         sums.energy_before = with_before.mul_add(own_before, sums.energy_before);
     }
+}
+
+/// Four numbers in double precision.
+#[inline(always)]
+fn in_double([a, b, c, d]: [f32; 4]) -> Lanes4 {
+    Lanes4([f64::from(a), f64::from(b), f64::from(c), f64::from(d)])
 }

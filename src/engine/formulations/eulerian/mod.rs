@@ -36,6 +36,7 @@ mod rates;
 mod rows;
 mod start;
 mod stress;
+mod within;
 
 pub use artificial_stress::{ArtificialStress, TensileStress};
 pub use control::HourglassEnergy;

@@ -2,6 +2,7 @@
 //! gradient.
 
 use super::particle::EulerianParticle;
+use super::within::{CHUNK, Within};
 use crate::correction::MomentMatrix;
 use crate::kernels::{Kernel, KernelProfile, KernelVisitor, ProfiledKernel, ScaledKernel};
 use crate::linalg::Sym3;
@@ -32,10 +33,8 @@ pub(super) struct NearbyMotion {
 pub(super) struct EulerianNeighbors {
     pub neighbors: Vec<u32>,
     pub weights: Vec<f64>,
-    /// Kernel values W_ij.
-    pub kernels: Vec<f64>,
-    /// Second derivatives W''_ij.
-    pub curvatures: Vec<f64>,
+    /// Second derivatives W''_ij, for hourglass control.
+    pub curvatures: Vec<f32>,
     pub around: Vec<NearbyMotion>,
 }
 
@@ -54,8 +53,7 @@ pub(super) struct NeighborRows<'a> {
     pub offsets: &'a [usize],
     pub neighbors: &'a mut [u32],
     pub weights: &'a mut [f64],
-    pub kernels: &'a mut [f64],
-    pub curvatures: &'a mut [f64],
+    pub curvatures: &'a mut [f32],
     pub around: &'a mut [NearbyMotion],
 }
 
@@ -65,20 +63,18 @@ impl Split for NeighborRows<'_> {
     }
 
     fn split(self, at: usize) -> (Self, Self) {
-        let Self { offsets, neighbors, weights, kernels, curvatures, around } = self;
+        let Self { offsets, neighbors, weights, curvatures, around } = self;
         let cut = offsets[at] - offsets[0];
         let (neighbors, neighbors_rest) = neighbors.split_at_mut(cut);
         let (weights, weights_rest) = weights.split_at_mut(cut);
-        let (kernels, kernels_rest) = kernels.split_at_mut(cut);
         let (curvatures, curvatures_rest) = curvatures.split_at_mut(cut);
         let (around, around_rest) = around.split_at_mut(at);
         (
-            Self { offsets: &offsets[..=at], neighbors, weights, kernels, curvatures, around },
+            Self { offsets: &offsets[..=at], neighbors, weights, curvatures, around },
             Self {
                 offsets: &offsets[at..],
                 neighbors: neighbors_rest,
                 weights: weights_rest,
-                kernels: kernels_rest,
                 curvatures: curvatures_rest,
                 around: around_rest,
             },
@@ -120,37 +116,41 @@ impl<K: KernelProfile> PlaneOrSpace for LookLoop<'_, '_, K> {
         let limit = support * support;
         let itself = kernel.w(0.0);
         let begin = rows.offsets[0];
+        let mut values = [0.0; CHUNK];
         for k in 0..rows.around.len() {
             let own = points[first + k].place;
             let start = rows.offsets[k] - begin;
             let list = if own.0[3] > 0.0 { rows.offsets[k]..rows.offsets[k + 1] } else { 0..0 };
-            // Who is near comes first, without a branch: it cannot be guessed.
-            let mut count = 0;
-            for &j in &lists[list] {
-                let other = points[j as usize].place;
-                let arm = a.minus(other, own);
-                let square = arm.dot3(arm);
-                rows.neighbors[start + count] = j;
-                count += usize::from((square < limit) & (square > 0.0) & (other.0[3] > 0.0));
-            }
             let (mut moment, mut first_moment) = ([Lanes4::ZERO; D], Lanes4::ZERO);
             let (mut weight_sum, mut filled) = (0.0, itself * points[first + k].velocity.0[3]);
-            let part = start..start + count;
-            let pairs = rows.neighbors[part.clone()].iter().zip(&mut rows.weights[part.clone()]);
-            let pairs = pairs.zip(&mut rows.kernels[part.clone()]).zip(&mut rows.curvatures[part]);
-            for (((&j, weight), value), curvature) in pairs {
-                let EulerianParticle { place: other, velocity } = points[j as usize];
-                let arm = a.minus(other, own);
-                let (distance, volume) = (arm.dot3(arm).sqrt(), other.0[3]);
-                let (w, kernel_value) = (kernel.pair_weight(distance), kernel.w(distance));
-                (*weight, *value, *curvature) = (w, kernel_value, kernel.d2w_dr2(distance));
-                let weighted = a.scale(volume * w, arm);
-                for axis in 0..D {
-                    moment[axis] = a.scale_add(arm.0[axis], weighted, moment[axis]);
+            let mut count = 0;
+            for list in lists[list].chunks(CHUNK) {
+                let from = start + count;
+                let room = from..from + list.len();
+                let (neighbors, squares) = (&mut rows.neighbors[room.clone()], &mut rows.weights[room]);
+                let found = Within { neighbors, squares }.find(a, list, (own, limit), points);
+                let part = from..from + found;
+                let neighbors = &rows.neighbors[part.clone()];
+                let (weights, curvatures) = (&mut rows.weights[part.clone()], &mut rows.curvatures[part]);
+                // By number: a loop over contiguous rows is computed several at once.
+                for n in 0..found {
+                    let distance = weights[n].sqrt();
+                    weights[n] = kernel.pair_weight(distance);
+                    values[n] = kernel.w(distance);
+                    curvatures[n] = kernel.d2w_dr2(distance) as f32;
                 }
-                first_moment = a.plus(first_moment, weighted);
-                weight_sum += volume * w;
-                filled += velocity.0[3] * kernel_value;
+                for n in 0..found {
+                    let EulerianParticle { place: other, velocity } = points[neighbors[n] as usize];
+                    let (arm, weight) = (a.minus(other, own), other.0[3] * weights[n]);
+                    let weighted = a.scale(weight, arm);
+                    for axis in 0..D {
+                        moment[axis] = a.scale_add(arm.0[axis], weighted, moment[axis]);
+                    }
+                    first_moment = a.plus(first_moment, weighted);
+                    weight_sum += weight;
+                    filled += velocity.0[3] * values[n];
+                }
+                count += found;
             }
             let inverse_moment =
                 MomentMatrix::of_columns(&moment).inverse_above(LEAST_SPREAD).unwrap_or_default();

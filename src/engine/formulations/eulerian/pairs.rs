@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::particle::EulerianParticle;
 use super::rows::EulerianRows;
+use crate::kernels::Kernel;
 use crate::pair::{
     Extras, FourVectors, PairBatch, PairReads, PairRows, PairSource, RowSlots, WeightAt, components,
 };
@@ -22,12 +23,14 @@ impl PairSource for EulerianPairs {
         &self,
         step: &Step<'_>,
         body: BodyId,
-        _: PairReads,
+        reads: PairReads,
         run: &mut dyn FnMut(&dyn PairRows) -> Result<(), StepError>,
     ) -> Result<(), StepError> {
         let packed = step.resources.solid_rows::<EulerianRows>(self.0);
-        let Some(body) = packed.lists.bodies.iter().find(|of| of.id == body) else { return Ok(()) };
-        run(&PairsOfEulerianBody { packed: &packed, support: body.support })
+        let of_body = packed.lists.bodies.iter().zip(&packed.kernels).find(|(of, _)| of.id == body);
+        let Some((body, of)) = of_body else { return Ok(()) };
+        let kernel = reads.kernel.then_some(of.kernel);
+        run(&PairsOfEulerianBody { packed: &packed, support: body.support, kernel })
     }
 
     fn access(&self) -> Vec<Access> {
@@ -40,6 +43,8 @@ struct PairsOfEulerianBody<'a> {
     packed: &'a EulerianRows,
     /// Support radius, m.
     support: f64,
+    /// The kernel, if a term reads its values.
+    kernel: Option<Kernel>,
 }
 
 impl PairRows for PairsOfEulerianBody<'_> {
@@ -60,7 +65,7 @@ impl HotLoop for FillEulerianPairs<'_> {
 
     #[inline(always)]
     fn run<A: FourLanes>(self, a: A) {
-        let Self { pairs: PairsOfEulerianBody { packed, support }, rows, batch } = self;
+        let Self { pairs: PairsOfEulerianBody { packed, support, kernel }, rows, batch } = self;
         let EulerianRows { lists, near, points, .. } = *packed;
         let mirrors = !lists.ghosts.is_empty();
         let extras = Extras { reference: true, weight_at: WeightAt::Current, mirrors, supports: false };
@@ -83,6 +88,17 @@ impl HotLoop for FillEulerianPairs<'_> {
                 let n = fours.len();
                 let four = FourNeighbors { i, neighbors: four, count: rest.len(), first: part.start + 4 * n };
                 put(a, packed, four, n, &mut room);
+            }
+            if let Some(kernel) = kernel {
+                let h = kernel.smoothing_length(*support);
+                for pairs in &mut *room.pairs {
+                    for lane in 0..4 {
+                        // Without a weight there is no neighbour.
+                        let is_there = pairs.volume_j.0[lane] > 0.0;
+                        let distance = pairs.current.length.0[lane].sqrt();
+                        pairs.kernel.0[lane] = if is_there { kernel.w(distance, h) } else { 0.0 };
+                    }
+                }
             }
         }
     }
@@ -111,16 +127,15 @@ fn put<A: FourLanes>(a: A, packed: &EulerianRows, four: FourNeighbors, n: usize,
     let [x, y, z, _] =
         a.transpose([carried[j].original, carried[k].original, carried[l].original, carried[m].original]);
     let then = Vector::new(a, [x, y, z]) - Vector::splat(a, original.xyz());
-    let (mut weight, mut kernel, mut volume_j) = (Lanes4::ZERO, Lanes4::ZERO, Lanes4::ZERO);
+    let (mut weight, mut volume_j) = (Lanes4::ZERO, Lanes4::ZERO);
     for lane in 0..count {
         weight.0[lane] = near.weights[at + lane];
-        kernel.0[lane] = near.kernels[at + lane];
         volume_j.0[lane] = volume.0[lane];
     }
     let pairs = &mut room.pairs[n];
     pairs.current = FourVectors::squared(a, now);
     pairs.velocity = components(passing);
-    (pairs.weight, pairs.kernel, pairs.volume_j) = (weight, kernel, volume_j);
+    (pairs.weight, pairs.kernel, pairs.volume_j) = (weight, Lanes4::ZERO, volume_j);
     room.reference[n] = FourVectors::squared(a, then);
     room.rows[n] = four;
     if !room.mirrors.is_empty() {

@@ -11,6 +11,7 @@ use super::near::LEAST_SPREAD;
 use super::particle::EulerianParticle;
 use super::rows::{EulerianRows, PointColumns};
 use super::start;
+use super::within::{CHUNK, Within};
 use crate::correction::MomentMatrix;
 use crate::kernels::{Kernel, KernelProfile, KernelVisitor, ProfiledKernel, ScaledKernel};
 use crate::parallel::{FourLanes, Lanes4, PlaneOrSpace, for_each_own_block, run_hot_in, share_rows};
@@ -146,19 +147,24 @@ impl<K: KernelProfile> PlaneOrSpace for AdvanceLoop<'_, K> {
             of: Advance { support, offsets, neighbors, points, first, dilatation, dt, deformation, .. },
         } = self;
         let limit = support * support;
+        let (mut near, mut weights) = ([0_u32; CHUNK], [0.0; CHUNK]);
         for (k, f) in deformation.iter_mut().enumerate() {
             let own = points[first + k];
             if own.place.0[3] <= 0.0 {
                 continue;
             }
             let (mut moment, mut spread) = ([Lanes4::ZERO; D], [Lanes4::ZERO; D]);
-            for &j in &neighbors[offsets[k]..offsets[k + 1]] {
-                let other = &points[j as usize];
-                let arm = a.minus(other.place, own.place);
-                let square = arm.dot3(arm);
-                if square < limit {
-                    let weight = other.place.0[3] * kernel.pair_weight(square.sqrt());
-                    let (weighted, passing) = (a.scale(weight, arm), a.minus(other.velocity, own.velocity));
+            for list in neighbors[offsets[k]..offsets[k + 1]].chunks(CHUNK) {
+                let within = Within { neighbors: &mut near, squares: &mut weights };
+                let count = within.find(a, list, (own.place, limit), points);
+                for weight in &mut weights[..count] {
+                    *weight = kernel.pair_weight(weight.sqrt());
+                }
+                for n in 0..count {
+                    let other = &points[near[n] as usize];
+                    let arm = a.minus(other.place, own.place);
+                    let weighted = a.scale(other.place.0[3] * weights[n], arm);
+                    let passing = a.minus(other.velocity, own.velocity);
                     for axis in 0..D {
                         moment[axis] = a.scale_add(arm.0[axis], weighted, moment[axis]);
                         spread[axis] = a.scale_add(weighted.0[axis], passing, spread[axis]);

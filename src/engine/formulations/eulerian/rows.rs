@@ -63,7 +63,6 @@ impl EulerianRows {
             let pairs = self.lists.neighbors.len();
             self.near.neighbors.resize(pairs, 0);
             self.near.weights.resize(pairs, 0.0);
-            self.near.kernels.resize(pairs, 0.0);
             self.near.curvatures.resize(pairs, 0.0);
             let all = position.len() + self.lists.ghosts.len();
             self.points.resize(all, EulerianParticle::default());

@@ -154,7 +154,6 @@ impl Stress {
                 offsets: &lists.offsets[rows.start..=rows.end],
                 neighbors: &mut near.neighbors[of_lists.clone()],
                 weights: &mut near.weights[of_lists.clone()],
-                kernels: &mut near.kernels[of_lists.clone()],
                 curvatures: &mut near.curvatures[of_lists],
                 around: &mut near.around[rows.clone()],
             },
