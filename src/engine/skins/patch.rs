@@ -264,17 +264,25 @@ impl Patch {
                 let is_new = last.place.is_nan();
                 let change = |new: DVec3| if dt > 0.0 { (new - last.place) / dt } else { DVec3::ZERO };
                 let velocity = if is_new { view.velocity(vertex) } else { change(place) };
-                let mobility = if wanted.mobility { view.mobility(vertex) } else { DVec3::ZERO };
-                let (mut gradient, mut rate) = (DMat3::IDENTITY, DMat3::ZERO);
-                if wanted.gradients {
-                    gradient = view.gradient(vertex);
-                    if dt > 0.0 && !is_new {
-                        rate = (gradient - last.gradient) * (1.0 / dt);
-                    }
+                let now = &mut now[k];
+                (now.place, now.velocity, now.is_there) = (place, velocity, is_there);
+                if wanted.mobility {
+                    now.mobility = view.mobility(vertex);
                 }
-                *last = Last { place, gradient };
-                let scale = view.scale(vertex).unwrap_or_default();
-                now[k] = Vertex { place, velocity, gradient, rate, mobility, is_there, scale };
+                if wanted.gradients {
+                    let gradient = view.gradient(vertex);
+                    let is_known = dt > 0.0 && !is_new;
+                    let change = || (gradient - last.gradient) * (1.0 / dt);
+                    now.rate = if is_known { change() } else { DMat3::ZERO };
+                    now.gradient = gradient;
+                    last.gradient = gradient;
+                } else if is_new {
+                    last.gradient = DMat3::IDENTITY;
+                }
+                last.place = place;
+                if let Some(scale) = view.scale(vertex) {
+                    now.scale = scale;
+                }
             });
         });
         self.is_whole = self.now.iter().all(|vertex| vertex.is_there);

@@ -14,6 +14,9 @@ use crate::schedule::{Step, StepError};
 use crate::symmetry::Map;
 use crate::world::{BodyId, DeformationGradient, Velocity};
 
+/// Velocities that are looked at side by side.
+const LANES: usize = 4;
+
 /// Bounds of the velocities of a body, and a bound of how far it is stretched: in tenths, so that lists are
 /// seldom built for another one.
 #[derive(Clone, Copy)]
@@ -55,10 +58,7 @@ impl MotionBounds {
         let first = velocity.first().map_or(DVec3::ZERO, |v| v.0);
         let range = sum_over_blocks(velocity, &|_, rows: &[Velocity]| Range::around(first, rows));
         let middle = first + range.middle();
-        let farthest = |rows: &[Velocity]| Squares {
-            spread: Largest::of(rows.iter().map(|v| v.0.distance_squared(middle))),
-            ..Squares::default()
-        };
+        let farthest = |rows: &[Velocity]| Squares { spread: farthest(rows, middle), ..Squares::default() };
         if !deform {
             let squares = sum_over_blocks(velocity, &|_, rows: &[Velocity]| farthest(rows));
             return Ok(Self { velocity: middle, spread: squares.spread.0.sqrt(), ..Self::NONE });
@@ -98,6 +98,22 @@ impl BlockSum for Range {
         self.min = self.min.min(next.min);
         self.max = self.max.max(next.max);
     }
+}
+
+/// The largest squared distance of a velocity from that, m2/s2.
+fn farthest(rows: &[Velocity], middle: DVec3) -> Largest {
+    // Several at once, each without a branch; the sum tells whether one is no number.
+    let (mut largest, mut sums) = ([0.0_f64; LANES], [0.0; LANES]);
+    let mut take = |k: usize, v: &Velocity| {
+        let squared = v.0.distance_squared(middle);
+        largest[k] = if squared > largest[k] { squared } else { largest[k] };
+        sums[k] += squared;
+    };
+    let chunks = rows.chunks_exact(LANES);
+    let rest = chunks.remainder();
+    chunks.for_each(|rows| (0..LANES).for_each(|k| take(k, &rows[k])));
+    rest.iter().enumerate().for_each(|(k, v)| take(k, v));
+    if sums.iter().any(|sum| sum.is_nan()) { Largest(f64::NAN) } else { Largest::of(largest.into_iter()) }
 }
 
 /// The largest squares.

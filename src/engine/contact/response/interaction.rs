@@ -93,6 +93,18 @@ impl Interaction {
         self.beside(spring, &ContactState { touch, ..*state }, inverse_mass, dt, before)
     }
 
+    /// The spring, of an area over that for which the law holds, where nothing but the overlap counts; the
+    /// sides have come closer by `way`, m, in the step.
+    #[inline]
+    pub fn elastic(&self, touch: &Touch, area: f64, way: f64, before: &History) -> (Spring, History) {
+        let touch = Touch { overlap: (touch.overlap - before.offset).max(0.0), ..*touch };
+        let mut spring = self.law.at(&touch).over(area);
+        spring.force = (spring.force * share_of_step(&touch, way, before)).max(0.0);
+        let stiffness = self.tangential * spring.stiffness;
+        let (overlap, offset, pressure) = (touch.overlap, before.offset, spring.force);
+        (spring, History { stiffness, overlap, offset, pressure, ..History::default() })
+    }
+
     /// Energy at the end of the last step of a contact that ends because a particle is removed, and the work
     /// of its force in the last kick, J; the relative velocity of the sides is given, m/s.
     pub fn held(&self, state: &ContactState, dt: f64, before: &History) -> f64 {

@@ -68,6 +68,8 @@ pub(super) struct CloseFacets {
     facets: [u32; ROOM],
     /// Their number; none if they do not fit.
     count: Option<usize>,
+    /// The one with the foot of the last point.
+    pub last: Option<u32>,
 }
 
 /// Room for facets that are close to one.
@@ -75,33 +77,33 @@ const ROOM: usize = 16;
 
 impl Default for CloseFacets {
     fn default() -> Self {
-        Self { of: u32::MAX, facets: [0; ROOM], count: None }
+        Self { of: u32::MAX, facets: [0; ROOM], count: None, last: None }
     }
 }
 
 impl CloseFacets {
-    /// Those of `near` no farther than `farthest`, m, from that facet; all of them if there is no room.
+    /// Looks for those of `near` no farther than `farthest`, m, from that facet.
     #[inline(always)]
-    pub fn find<'a>(
-        &'a mut self,
-        number: u32,
-        own: &FacetPlace,
-        near: &NearFacets<'a>,
-        farthest: f64,
-    ) -> &'a [u32] {
-        if self.of != number {
-            self.of = number;
-            let mut count = 0;
-            for &facet in near.facets {
-                let FacetPlace { center, radius, .. } = near.places[facet as usize];
-                let apart = center.distance_squared(near.image(own.center, center));
-                if apart <= (farthest + radius + own.radius).powi(2) {
-                    self.facets[count % ROOM] = facet;
-                    count += 1;
-                }
-            }
-            self.count = (count <= ROOM).then_some(count);
+    pub fn find(&mut self, number: u32, own: &FacetPlace, near: &NearFacets<'_>, farthest: f64) {
+        if self.of == number {
+            return;
         }
+        (self.of, self.last) = (number, None);
+        let mut count = 0;
+        for &facet in near.facets {
+            let FacetPlace { center, radius, .. } = &near.places[facet as usize];
+            let apart = center.distance_squared(near.image(own.center, *center));
+            if apart <= (farthest + radius + own.radius).powi(2) {
+                self.facets[count % ROOM] = facet;
+                count += 1;
+            }
+        }
+        self.count = (count <= ROOM).then_some(count);
+    }
+
+    /// What has been found; all of `near` if there was no room.
+    #[inline(always)]
+    pub fn facets<'a>(&'a self, near: &NearFacets<'a>) -> &'a [u32] {
         self.count.map_or(near.facets, |count| &self.facets[..count])
     }
 }
@@ -115,44 +117,58 @@ impl NearFacets<'_> {
 
     /// The facet with the point nearest to `x`, with the square of its distance, m2, and the shares of the
     /// vertices there, if that is less than `farthest`, m. Of facets that are equally near it is the first
-    /// one.
+    /// one. It is looked for from `begin` on, which need not be near; without one, from where the centre is
+    /// nearest.
     #[inline(always)]
-    fn nearest(&self, x: DVec3, farthest: f64) -> Option<(f64, u32, [f64; 3])> {
+    fn nearest(&self, x: DVec3, farthest: f64, begin: Option<u32>) -> Option<(f64, u32, [f64; 3])> {
         let Self { patch, places, facets, .. } = *self;
         let axes = patch.skin.facets.axes;
-        let (mut begin, mut least) = (*facets.first()?, f64::INFINITY);
-        for &facet in facets {
-            let center = places[facet as usize].center;
-            let squared = center.distance_squared(self.image(x, center));
-            if squared < least {
-                (begin, least) = (facet, squared);
-            }
-        }
+        let begin = match begin {
+            Some(facet) => facet,
+            None => self.with_nearest_center(x)?,
+        };
         let mut nearest = (farthest * farthest, 0, [0.0; 3]);
         let (mut reach, mut is_found) = (farthest, false);
-        // Begun where the centre is nearest, so that most of the others are passed over.
-        for &facet in [begin].iter().chain(facets) {
+        // Begun near by, so that most of the others are passed over.
+        let mut look = |facet: u32| {
             let FacetPlace { center, radius, corners } = &places[facet as usize];
             let x = self.image(x, *center);
             if center.distance_squared(x) > (reach + radius).powi(2) {
-                continue;
+                return;
             }
             let shares = if axes == 2 { on_segment(x, corners) } else { on_triangle(x, corners) };
             let squared = point(corners, shares).distance_squared(x);
             if squared < nearest.0 || (squared == nearest.0 && facet < nearest.1) {
                 (nearest, reach, is_found) = ((squared, facet, shares), squared.sqrt(), true);
             }
-        }
+        };
+        look(begin);
+        facets.iter().filter(|facet| **facet != begin).for_each(|facet| look(*facet));
         is_found.then_some(nearest)
+    }
+
+    /// The facet whose centre is nearest.
+    #[inline(always)]
+    fn with_nearest_center(&self, x: DVec3) -> Option<u32> {
+        let (mut begin, mut least) = (*self.facets.first()?, f64::INFINITY);
+        for &facet in self.facets {
+            let center = self.places[facet as usize].center;
+            let squared = center.distance_squared(self.image(x, center));
+            if squared < least {
+                (begin, least) = (facet, squared);
+            }
+        }
+        Some(begin)
     }
 }
 
-/// The foot of `x` on the nearest of some facets, if it is no farther than `farthest`, m. Facets whose balls
-/// are farther than the nearest one so far are passed over.
-pub(super) fn foot(near: &NearFacets<'_>, x: DVec3, farthest: f64) -> Option<Foot> {
+/// The foot of `x` on the nearest of some facets, looked for from `begin` on, if it is no farther than
+/// `farthest`, m. Facets whose balls are farther than the nearest one so far are passed over.
+#[inline]
+pub(super) fn foot(near: &NearFacets<'_>, x: DVec3, farthest: f64, begin: Option<u32>) -> Option<Foot> {
     let NearFacets { patch, places, .. } = *near;
     let axes = patch.skin.facets.axes;
-    let (squared, facet, shares) = near.nearest(x, farthest)?;
+    let (squared, facet, shares) = near.nearest(x, farthest, begin)?;
     let FacetPlace { center, corners, .. } = &places[facet as usize];
     let x = near.image(x, *center);
     let inner = shares[..axes].iter().filter(|share| **share > 0.0).count();

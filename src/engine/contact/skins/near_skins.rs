@@ -10,6 +10,7 @@ use glam::DVec3;
 use super::displaced::{Displaced, approach};
 use super::near_tool::{FASTER, MARGIN};
 use super::region::SkinRegion;
+use crate::contact::bodies::MotionBounds;
 use crate::contact::response::PairKey;
 use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic};
 use crate::parallel::{Picked, for_each_block};
@@ -83,10 +84,9 @@ impl NearSkins {
         2.0 * (NEAR + 2.0 * STRETCHED * LONGEST[skins[0].facets.axes - 2]) * spacing
     }
 
-    /// Takes in a step of that length, s, with a largest speed of both bodies together, m/s. Says whether the
-    /// facets have to be found again.
-    pub fn is_old(&mut self, speed: f64, dt: f64) -> bool {
-        let way = FASTER * speed * dt;
+    /// Takes in a step in which points of both skins come closer by `way`, m, at most. Says whether the facets
+    /// have to be found again.
+    pub fn is_old(&mut self, way: f64) -> bool {
         self.left -= way;
         self.regions.iter_mut().for_each(|region| region.left -= way);
         // What is not a number must not keep old candidates.
@@ -257,6 +257,11 @@ impl NearSkins {
     fn around(&self, side: usize) -> Aabb {
         Aabb::around(self.regions[side].vertices.iter().map(|&vertex| self.places[side][vertex as usize]))
     }
+}
+
+/// A bound of how fast points of the skins of two bodies approach each other, m/s.
+pub(super) fn speed_of_points([first, second]: [MotionBounds; 2]) -> f64 {
+    first.velocity.distance(second.velocity) + FASTER * (first.spread + second.spread)
 }
 
 /// How far a place, or an image of it, is from a box at least, m.

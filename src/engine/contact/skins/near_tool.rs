@@ -16,8 +16,8 @@ use crate::skins::{Skin, SkinView};
 const NEAR: f64 = 1.5;
 /// Gap that is left when the candidates are found again: a facet is one for some steps before it touches.
 pub(super) const MARGIN: f64 = 0.5;
-/// Speed of a point of a skin over the largest one of particles, at most: its weights add up to one, and some
-/// are negative.
+/// Speed of a point of a skin over the largest one of particles, at most, both relative to a velocity of the
+/// body: its weights add up to one, and some are negative.
 pub(super) const FASTER: f64 = 3.0;
 
 /// The facets near a tool.

@@ -18,7 +18,7 @@ use std::sync::Arc;
 use glam::{DMat3, DVec3};
 
 use super::foot::{CloseFacets, FacetPlace, Foot, locate};
-use super::near_skins::NearSkins;
+use super::near_skins::{NearSkins, speed_of_points};
 use super::side::{FacetPoint, PointPush, PointTouch, SkinSide, shift_foot};
 use crate::contact::active::{ActiveContacts, Least};
 use crate::contact::bodies::{MotionBounds, failed};
@@ -81,9 +81,10 @@ impl SkinPair {
         let skins = [0, 1].map(|k| Arc::clone(&self.patches[k].skin));
         let first = SkinColumns::new(&skins[0], step.world)?;
         let second = SkinColumns::new(&skins[1], step.world)?;
-        let speed = MotionBounds::approach(motion, &Map::IDENTITY);
+        let [speed, fastest] = [MotionBounds::approach(motion, &Map::IDENTITY), speed_of_points(motion)];
         self.keeps_reference = skins.iter().all(|skin| time_step::keeps_reference(step, skin.body));
-        let (energies, stiffness) = self.act([first.view(), second.view()], speed, dt).map_err(failed)?;
+        let (energies, stiffness) =
+            self.act([first.view(), second.view()], [speed, fastest], dt).map_err(failed)?;
         let squared = CORNERS * stiffness * (skins[0].lightness + skins[1].lightness);
         let reach = skins[0].spacing.min(skins[1].spacing);
         let touches = Touches { squared, stored: energies.stored, speed, reach };
@@ -91,15 +92,15 @@ impl SkinPair {
         Ok(energies)
     }
 
-    /// The forces between two bodies, whose largest speeds add up to `speed`, m/s, after a step of `dt`, s;
-    /// with the stiffness over an area that the next one goes by, N/m3 (N/m2 in two dimensions).
+    /// The forces between two bodies, whose particles and points approach each other at most with these
+    /// speeds, m/s, after a step of `dt`, s; with the stiffness over an area that the next one goes by, N/m3 (N/m2 in two dimensions).
     pub fn act(
         &mut self,
         views: [SkinView<'_>; 2],
-        speed: f64,
+        [speed, fastest]: [f64; 2],
         dt: f64,
     ) -> Result<(ContactEnergy, f64), NeighborError> {
-        if self.near.is_old(speed, dt) {
+        if self.near.is_old(fastest * dt) {
             let [first, second] = self.patches.each_ref().map(|patch| &*patch.skin);
             if self.near.find([first, second], &views, self.rule.len())? {
                 for (patch, facets) in self.patches.iter_mut().zip(&self.near.facets) {
@@ -174,8 +175,10 @@ impl SkinPair {
             let couple = DMat3::from_cols(f * push.arm.x, f * push.arm.y, f * push.arm.z);
             other.push(there, below, -push.force, (f != DVec3::ZERO).then_some(&couple));
             shift_foot(own, other, point, touch, push.energy);
-            own.heat(point.facet, point.shares, heat[0] * push.heat);
-            other.heat(there, below, heat[1] * push.heat);
+            if push.heat != 0.0 {
+                own.heat(point.facet, point.shares, heat[0] * push.heat);
+                other.heat(there, below, heat[1] * push.heat);
+            }
         }
         sum_over_blocks(pass.pushes(), &|_, pushes: &[PointPush]| {
             Largest::of(pushes.iter().map(|push| push.stiffness))

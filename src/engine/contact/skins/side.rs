@@ -98,6 +98,9 @@ impl SkinSide<'_> {
     ) -> (History, PointPush) {
         let Self { interaction, own, length, dt, .. } = *self;
         let PointTouch { foot, weight } = *touch;
+        if interaction.is_elastic() {
+            return self.spring(point, touch, before, energies);
+        }
         let PointMotion { velocity, arm, mobility } = self.motion(point, touch);
         let mut losses = Losses::default();
         if !before.is_elastic() {
@@ -132,6 +135,28 @@ impl SkinSide<'_> {
         (response.history, PointPush { force: response.force, across, arm, energy, stiffness, heat })
     }
 
+    /// The same where nothing but the overlap counts.
+    #[inline(always)]
+    fn spring(
+        &self,
+        point: u32,
+        PointTouch { foot, weight }: &PointTouch,
+        before: &History,
+        energies: &mut ContactEnergy,
+    ) -> (History, PointPush) {
+        let Self { length, dt, .. } = *self;
+        let velocity = self.velocity(point) - self.velocity_at(foot);
+        let (area, usual) = (self.area(point), length.powi(self.own.skin.facets.axes as i32 - 1));
+        let touch = Touch { overlap: -foot.distance, radius: 0.5 * length, length, depth: length };
+        let way = -velocity.dot(foot.normal) * dt;
+        let (spring, history) = self.interaction.elastic(&touch, weight * area / usual, way, before);
+        let force = spring.force * foot.normal;
+        energies.stored += spring.energy;
+        energies.ahead += 0.5 * dt * force.dot(velocity);
+        let (energy, stiffness) = (spring.energy / weight, spring.stiffness / area);
+        (history, PointPush { force, energy, stiffness, ..PointPush::default() })
+    }
+
     /// Takes in the energy of a contact that has ended; `facets` are those of the other skin near the point.
     pub fn end(&self, point: u32, facets: &[u32], history: &History, energies: &mut ContactEnergy) {
         if !history.is_elastic() {
@@ -159,8 +184,10 @@ impl SkinSide<'_> {
         let FacetPoint { facet, shares } = self.point(point);
         let (own, farthest) = (&self.places[0][facet as usize], DEPTH * self.length);
         let near = NearFacets { patch: self.other, places: self.places[1], facets, periodic: self.periodic };
-        let facets = close.find(facet, own, &near, farthest);
-        let foot = foot(&NearFacets { facets, ..near }, own.point(shares), farthest)?;
+        close.find(facet, own, &near, farthest);
+        let facets = close.facets(&near);
+        let foot = foot(&NearFacets { facets, ..near }, own.point(shares), farthest, close.last)?;
+        close.last = Some(foot.facet);
         Some(PointTouch { foot, weight: 0.0 })
     }
 
@@ -198,6 +225,12 @@ impl SkinSide<'_> {
         (0..3).map(|k| shares[k] * corners[k].velocity).sum()
     }
 
+    /// Velocity of the other skin at a foot, m/s.
+    fn velocity_at(&self, foot: &Foot) -> DVec3 {
+        let corners = self.other.corners(foot.facet);
+        (0..3).map(|k| foot.shares[k] * corners[k].velocity).sum()
+    }
+
     /// Motion of a point relative to the material of the other body.
     #[inline(always)]
     fn motion(&self, point: u32, touch: &PointTouch) -> PointMotion {
@@ -206,8 +239,7 @@ impl SkinSide<'_> {
         let below = touch.foot.shares;
         if self.interaction.is_elastic() {
             // Neither the velocity across the normal nor the mobility counts.
-            let at_foot: DVec3 = (0..3).map(|k| below[k] * other[k].velocity).sum();
-            let velocity = self.velocity(point) - at_foot;
+            let velocity = self.velocity(point) - self.velocity_at(&touch.foot);
             return PointMotion { velocity, arm: DVec3::ZERO, mobility: DVec3::ZERO };
         }
         let gradient = (0..3).fold(DMat3::ZERO, |sum, k| sum + other[k].gradient * below[k]);
@@ -233,6 +265,10 @@ pub(super) fn shift_foot(
 ) {
     let Foot { facet: there, shares: below, normal, distance, .. } = touch.foot;
     let skin = &other.skin;
+    let [a, b, c] = skin.facets.corners[there as usize].map(|vertex| skin.corner[vertex as usize]);
+    if a == b && b == c {
+        return;
+    }
     // The vertices between which the foot lies, in the first places.
     let mut ends = [0, 1, 2];
     ends.sort_by_key(|&k| k >= skin.facets.axes || below[k] <= 0.0);

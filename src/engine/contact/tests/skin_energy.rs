@@ -76,7 +76,7 @@ impl Blocks {
         let columns = [0, 1].map(|k| SkinColumns::new(&skins[k], self.sim.world()).unwrap());
         // A speed and a step that make the candidates old each time.
         let views = columns.each_ref().map(SkinColumns::view);
-        let (tally, _) = self.pair.act(views, 1e3, 1.0).unwrap();
+        let (tally, _) = self.pair.act(views, [1e3; 2], 1.0).unwrap();
         let mut forces = [0, 1].map(|k| vec![(DVec3::ZERO, DMat3::ZERO); state[k].len()]);
         for (forces, patch) in forces.iter_mut().zip(&self.pair.patches) {
             patch.on_particles().for_each(|(particle, force, couple)| forces[particle] = (force, couple));
