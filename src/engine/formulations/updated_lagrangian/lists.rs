@@ -105,16 +105,18 @@ impl ReferenceLists {
         Ok(())
     }
 
-    /// Begins the bonds of the stabilizers, with original places, m, volumes, m3, and F_r.
+    /// Begins the bonds of the stabilizers, with original places, m, volumes, m3, and F_r, each to be
+    /// multiplied by its `scale`.
     pub fn begin_control(
         &mut self,
         original: &[DVec3],
         volumes: &[f64],
         gradient: &[DMat3],
+        scale: impl Fn(usize) -> f64 + Sync,
         ghosts: &Ghosts,
     ) {
         self.seen.place(ghosts, original, volumes);
-        fill_columns(&mut self.columns, ghosts, gradient);
+        fill_columns(&mut self.columns, ghosts, gradient, scale);
     }
 
     /// Gives the bonds of the stabilizers of some rows, whose neighbours are there already, weights and

@@ -92,14 +92,19 @@ impl SeenParticles {
     }
 }
 
-/// Fills the columns of F_r of all particles and their ghosts.
-pub(super) fn fill_columns(columns: &mut Vec<Columns>, ghosts: &Ghosts, gradient: &[DMat3]) {
+/// Fills the columns of F_r of all particles, each times its `scale`, and of their ghosts.
+pub(super) fn fill_columns(
+    columns: &mut Vec<Columns>,
+    ghosts: &Ghosts,
+    gradient: &[DMat3],
+    scale: impl Fn(usize) -> f64 + Sync,
+) {
     let of = |f: DMat3| [f.x_axis, f.y_axis, f.z_axis].map(|column| Lanes4::new(column, 0.0));
     columns.resize(gradient.len() + ghosts.len(), [Lanes4::ZERO; 3]);
     for_each_block(&mut columns[..gradient.len()], &mut Vec::new(), &|first, columns: &mut [Columns]| {
-        columns.iter_mut().zip(first..).for_each(|(own, row)| *own = of(gradient[row]));
+        columns.iter_mut().zip(first..).for_each(|(own, row)| *own = of(gradient[row] * scale(row)));
     });
-    ghosts.fill(columns, |ghost, _| of(ghost.map.tensor(gradient[ghost.source])));
+    ghosts.fill(columns, |ghost, _| of(ghost.map.tensor(gradient[ghost.source] * scale(ghost.source))));
 }
 
 /// A particle in every lane.

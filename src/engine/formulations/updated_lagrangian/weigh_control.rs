@@ -10,8 +10,8 @@ use crate::world::World;
 
 impl UpdatedRows {
     /// Decides which bodies need sums for their stabilizers, and builds their bonds without `failed`
-    /// particles; the rows are ascending.
-    pub fn weigh_control(&mut self, world: &World, original: &[DVec3], failed: &[u32]) {
+    /// particles, from places, m, and volumes, m3, of the start; the rows are ascending.
+    pub fn weigh_control(&mut self, world: &World, original: &[DVec3], start: &[f64], failed: &[u32]) {
         let Self { bonds, ghosts, gradient, kernels, control, volume, lists, follows, .. } = self;
         control.is_apart.clear();
         for (k, BodyKernel { body, .. }) in kernels.iter().enumerate() {
@@ -27,10 +27,13 @@ impl UpdatedRows {
             return;
         }
         control.origin = bounds(original).middle();
-        control.volume.clone_from(volume);
+        let measure = UndilatedMeasure { volume, start, axes: world.dimension().count() as f64 };
+        control.volume.clear();
+        control.volume.extend((0..volume.len()).map(|row| measure.volume(row)));
         failed.iter().for_each(|&row| control.volume[row as usize] = 0.0);
         control.bonds.share_topology(bonds);
-        lists.begin_control(original, &control.volume, gradient, ghosts);
+        let scale = |row| measure.scale(row);
+        lists.begin_control(original, &control.volume, gradient, scale, ghosts);
         let apart = kernels.iter().zip(&control.is_apart).filter(|(_, is_apart)| **is_apart);
         for (BodyKernel { body, kernel, .. }, _) in apart {
             lists.weigh_control(&world.body(*body).rows, kernel, &mut control.bonds);
@@ -39,5 +42,36 @@ impl UpdatedRows {
         control.sites.resize(all, PackedParticle::default());
         control.stresses.resize(all, CorrectedStress::default());
         control.self_force.resize(real, DVec3::ZERO);
+    }
+}
+
+/// Volumes and lengths that leave the stiffness of the stabilizers of a bond as it is while the material only
+/// dilates. With J = V / V_0 on d axes, axes of ellipsoids are longer by the factor `J^(1/2d)` (see
+/// `Ellipsoid::following`), so that `V_i V_j w_ij` at the moved pair vector would change with J.
+#[derive(Clone, Copy)]
+struct UndilatedMeasure<'a> {
+    /// V, m3; zero of what has been removed.
+    volume: &'a [f64],
+    /// V_0, m3.
+    start: &'a [f64],
+    /// d.
+    axes: f64,
+}
+
+impl UndilatedMeasure<'_> {
+    fn dilatation(&self, row: usize) -> f64 {
+        self.volume[row] / self.start[row]
+    }
+
+    /// Factor of pair vectors: they grow as the axes do, and the distance stays.
+    fn scale(&self, row: usize) -> f64 {
+        let dilatation = self.dilatation(row);
+        if dilatation > 0.0 { dilatation.powf(-0.5 / self.axes) } else { 1.0 }
+    }
+
+    /// Volume, m3: the factor `J^(-1/2)` of the kernel of a bond is taken back half by either end.
+    fn volume(&self, row: usize) -> f64 {
+        let dilatation = self.dilatation(row);
+        if dilatation > 0.0 { self.start[row] * dilatation.sqrt().sqrt() } else { 0.0 }
     }
 }
