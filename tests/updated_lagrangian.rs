@@ -225,6 +225,20 @@ fn a_body_of_random_particles_that_breathes_by_a_fifth_keeps_its_energy() {
     assert!(sim.ledger().total_named("reference_update") != 0.0, "it is updated");
 }
 
+/// The stiffness of the control does not follow the dilatation, and updates do no work.
+#[test]
+fn a_body_that_breathes_gains_no_energy_by_many_updates() {
+    let scene = include_str!("validation/patch/scene.ron")
+        .replace("TotalLagrangian(neighbors: 12)", "UpdatedLagrangian(update: Every(10))")
+        .replace("end: 308.0", "end: 15.5");
+    let mut sim = simulation(&Source::new("patch.ron", scene));
+    sim.start().expect("a start");
+    let start = sim.ledger().stored();
+    sim.run(|_| true).expect("a run");
+    let booked = sim.ledger().total_named("reference_update") / start;
+    assert!(booked != 0.0 && booked.abs() < 0.01, "updates have taken {booked} of the energy");
+}
+
 #[test]
 fn a_gate_beside_water_moves_alike_in_every_formulation() {
     let scene = include_str!("validation/elastic_gate/scene.ron");

@@ -3,10 +3,11 @@
 use glam::DVec3;
 
 use super::control::Control;
+use super::force_change::ForceChange;
 use super::phase::UpdatedRows;
 use crate::formulations::bonded::{InternalForce as StressForce, bodies_of};
 use crate::parallel::{for_each_block, share_rows_of};
-use crate::schedule::{Run, Step, StepError};
+use crate::schedule::{Run, Shared, Step, StepError};
 use crate::world::{Force, Mass, PhaseId};
 
 /// The system of the pass.
@@ -16,6 +17,7 @@ pub(super) struct UpdatedForce {
     pub plane: bool,
     /// Acceleration of gravity, m/s2.
     pub gravity: DVec3,
+    pub change: Shared<ForceChange>,
 }
 
 impl Run for UpdatedForce {
@@ -28,12 +30,13 @@ impl Run for UpdatedForce {
             add_gravity(&rows, &mass, self.gravity, &mut force);
         } else {
             write_own(&rows, &mass, self.gravity, self.plane, &mut force);
+            step.resources.of(self.change).take_back(&mut force);
         }
         Ok(())
     }
 }
 
-/// Writes the force that an update has left, N, with gravity.
+/// Writes the force that is known for a step with an update, N, with gravity.
 fn add_gravity(rows: &UpdatedRows, mass: &[Mass], gravity: DVec3, force: &mut [Force]) {
     let UpdatedRows { force: known, sites, .. } = rows;
     for_each_block(force, &mut Vec::new(), &|first, force: &mut [Force]| {

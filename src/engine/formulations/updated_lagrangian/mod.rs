@@ -20,6 +20,7 @@ mod columns;
 mod control;
 mod due;
 mod force;
+mod force_change;
 mod gradient;
 mod lists;
 mod lost_neighbors;

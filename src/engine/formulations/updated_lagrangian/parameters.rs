@@ -6,6 +6,7 @@ use serde::Deserialize;
 use super::columns::{UpdatedGradient, UpdatedMetric, UpdatedReference, UpdatedVolume};
 use super::due::UpdateRule;
 use super::force::UpdatedForce;
+use super::force_change::{ChangeForces, ForceChange};
 use super::phase::UpdatedRows;
 use super::set_up::UpdatedSetUp;
 use super::system::UpdatedSolids;
@@ -50,6 +51,8 @@ impl Default for UpdatedLagrangian {
 const GRADIENT: &str = "updated_lagrangian_gradient";
 /// Label of the system that makes the internal force.
 const FORCE: &str = "updated_lagrangian_force";
+/// Label of the system that goes on to the forces of a new reference.
+const FORCE_CHANGE: &str = "updated_lagrangian_force_change";
 
 impl Formulation for UpdatedLagrangian {
     const NAME: &'static str = "UpdatedLagrangian";
@@ -106,15 +109,19 @@ impl Formulation for UpdatedLagrangian {
             UpdateRule { update: own.update, spacing, h: 0.5 * own.support * spacing, is_elastic }
         };
         let rules = bodies.iter().zip(solids.iter()).map(rule).collect();
-        let system = UpdatedSolids::new(phase, plane, solids, rules);
+        let change = sim.share(ForceChange::default());
+        let system = UpdatedSolids::new(phase, plane, solids, rules, change);
         let first_lists = UpdatedSetUp::of(phase, first, system.is_stabilized(), sim);
         sim.add_setup(move |setup| first_lists.run(setup));
         sim.add_system(gradient(phase, system).touches_all(state));
-        let force = UpdatedForce { phase, plane, gravity: sim.gravity() };
+        let force = UpdatedForce { phase, plane, gravity: sim.gravity(), change };
         let force = System::new(Stage::Rates, FORCE, force).on_phases([phase]).reads::<Mass>();
         sim.add_system(
             force.reads_near::<Position>().touches(CORRECTED_STRESS, Mode::ReadsNear).writes::<Force>(),
         );
+        let change = System::new(Stage::PostStep, FORCE_CHANGE, ChangeForces { phase, change });
+        // Relaxation looks at the forces of the step.
+        sim.add_system(change.on_phases([phase]).touches(Force::NAME, Mode::Adds).after_any("local_damping"));
         add_pair_systems(sim, phase, BondPairs::<UpdatedRows>::of(phase))
     }
 }

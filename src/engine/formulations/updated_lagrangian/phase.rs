@@ -54,9 +54,10 @@ pub(super) struct UpdatedRows {
     pub released_at_start: Vec<usize>,
     /// Kept for the next update.
     pub lists: ReferenceLists,
-    /// Internal forces after an update, N: those of the step where no couple is added to the stresses.
+    /// Internal forces that the second kick of a step with an update uses, N, where no couple is added to the
+    /// stresses.
     pub force: Vec<Force>,
-    /// Whether they are those of the present stresses.
+    /// Whether they are those of the step.
     pub has_force: bool,
 }
 

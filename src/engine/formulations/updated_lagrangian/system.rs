@@ -8,6 +8,7 @@ use super::columns::{UpdatedGradient, UpdatedMetric, UpdatedReference, UpdatedVo
 use super::control::{Control, ControlPass};
 use super::due::UpdateRule;
 use super::force;
+use super::force_change::ForceChange;
 use super::gradient::{GradientRows, UpdatedGradientPass};
 use super::lost_neighbors::widen;
 use super::phase::UpdatedRows;
@@ -16,7 +17,7 @@ use super::smoothed_reference::{ReferenceRelaxation, ReferenceSmoothing};
 use crate::formulations::bonded::{AffineFrame, BondedSites, Ellipsoid, FrameIndifferent, PackedParticle};
 use crate::notation::quantity;
 use crate::parallel::share_picked;
-use crate::schedule::{AccountKind, Run, Step, StepError};
+use crate::schedule::{AccountKind, Run, Shared, Step, StepError};
 use crate::solids::{
     BodyPass, HessianForm, Loss, SolidBodies, SolidColumns, SolidPart, StepEstimate, TakenUp, count_rows,
     fill_rows,
@@ -41,12 +42,16 @@ pub(super) struct UpdatedSolids {
     keeps: Vec<bool>,
     /// Of every body: whether its reference is updated in this step.
     due: Vec<bool>,
+    /// Of every body: whether it has lost particles since the last update.
+    has_lost: Vec<bool>,
     /// Removed rows that the reference knows of, ascending.
     removed: Vec<u32>,
     /// Rows of failed particles that it knows of, ascending.
     failed: Vec<u32>,
     /// Whether the lists are those of another reference than that of the columns: after a restart.
     is_stale: bool,
+    /// What the update of this step has changed of internal forces.
+    change: Shared<ForceChange>,
     kept: KeptMemory,
 }
 
@@ -61,7 +66,13 @@ struct KeptMemory {
 
 impl UpdatedSolids {
     /// The system of these bodies, one rule for each.
-    pub fn new(phase: PhaseId, plane: bool, solids: SolidBodies, rules: Vec<UpdateRule>) -> Self {
+    pub fn new(
+        phase: PhaseId,
+        plane: bool,
+        solids: SolidBodies,
+        rules: Vec<UpdateRule>,
+        change: Shared<ForceChange>,
+    ) -> Self {
         Self {
             phase,
             plane,
@@ -69,9 +80,11 @@ impl UpdatedSolids {
             keeps: vec![false; rules.len()],
             rules,
             due: Vec::new(),
+            has_lost: Vec::new(),
             removed: Vec::new(),
             failed: Vec::new(),
             is_stale: false,
+            change,
             kept: KeptMemory::default(),
         }
     }
@@ -238,13 +251,14 @@ impl UpdatedSolids {
     /// Makes the present configuration the reference of the bodies that are due, among them those of which
     /// particles have been removed or have failed.
     ///
-    /// The second kick of the step uses the new forces, the motion up to here has used the old ones: what
-    /// that takes from the motion is booked with the change of the stored energies.
+    /// What the second kick of the step takes from the motion by new forces, where it uses these already, is
+    /// booked with the change of the stored energies.
     fn update(
         &mut self,
         step: &mut Step<'_>,
         packed: &mut UpdatedRows,
         is_due: &[bool],
+        has_lost: &[bool],
     ) -> Result<(), StepError> {
         let held = self.solids.stored();
         let mut kept = std::mem::take(&mut self.kept);
@@ -256,6 +270,10 @@ impl UpdatedSolids {
         packed.warn_of_released(step);
         let mut after = std::mem::take(&mut packed.force);
         self.write_forces(step.world, packed, &mut after)?;
+        // At the start there is no kick before the first one.
+        let at_once = (0..has_lost.len()).filter(|&k| has_lost[k] || step.clock.dt == 0.0);
+        let rows = at_once.map(|k| step.world.body(self.solids.id(k)).rows.clone());
+        step.resources.of_mut(self.change).note(&kept.before, &mut after, rows);
         let account = step.ledger.account(ACCOUNT, AccountKind::Dissipated);
         self.solids.book_change(step, account, &held, &kept.before, &after)?;
         (packed.force, packed.has_force) = (after, true);
@@ -417,6 +435,7 @@ impl Run for UpdatedSolids {
             renewed.map_err(|error| error.in_step(step.world))?;
             packed.take_gradients(step.world, self.phase, &self.failed)?;
         }
+        resources.of_mut(self.change).forget();
         self.pass(step.world, &mut packed, SolidPart::of(step), None)?;
         self.solids.book(step)?;
         // From the first step on, so that it has its place among the energies.
@@ -425,11 +444,14 @@ impl Run for UpdatedSolids {
         due.clear();
         due.resize(self.solids.len(), false);
         self.take_up_lost(step.world, &mut due)?;
+        self.has_lost.clone_from(&due);
         for (k, due) in due.iter_mut().enumerate() {
             *due = *due || self.is_due(k, step, &packed)?;
         }
         if due.contains(&true) {
-            self.update(step, &mut packed, &due)?;
+            let has_lost = std::mem::take(&mut self.has_lost);
+            self.update(step, &mut packed, &due, &has_lost)?;
+            self.has_lost = has_lost;
         }
         self.due = due;
         let UpdatedRows { stable_step, gradient, kernels, follows, .. } = &*packed;
