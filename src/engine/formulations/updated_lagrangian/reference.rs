@@ -143,7 +143,7 @@ impl UpdatedRows {
             let rows = world.body(*body).rows.clone();
             self.follows.push(!present.is_original(at_start, &self.gradient, rows));
         }
-        self.weigh_control(world, (original, bytemuck::cast_slice(&start)), failed);
+        self.weigh_control(world, original, bytemuck::cast_slice(&start), failed);
         if self.has_followed() {
             self.pair_sites.resize(self.sites.len(), PackedParticle::default());
         }
