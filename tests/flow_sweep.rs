@@ -119,13 +119,21 @@ fn plugins_keep_the_volume_and_give_no_energy_in_coarse_flows() {
     assert!(failed.is_empty(), "{failed:#?}");
 }
 
+/// Whether it says that a liquid with the true speed of sound passes the edges of a rectangle at a quarter of
+/// it, which it does: no other speed of sound would be that of the liquid.
+fn is_of_sound(flow: &str, warning: &str) -> bool {
+    flow == "abrasive_flow" && warning.contains("Mach number")
+}
+
 #[test]
 fn coarse_variants_of_shipped_flows_give_no_warnings() {
     let mut told = Vec::new();
-    // Turned grains do not fit the lattice of the flow that they are in, which is told.
-    for (flow, set) in COARSE.iter().filter(|(flow, _)| *flow != "abrasive_flow") {
+    for (flow, set) in COARSE {
         match warnings_of(&standard_plugins(), flow, set, steps(set)) {
-            Ok(warnings) => told.extend(warnings.into_iter().map(|text| format!("{flow}: {text}"))),
+            Ok(warnings) => {
+                let others = warnings.into_iter().filter(|text| !is_of_sound(flow, text));
+                told.extend(others.map(|text| format!("{flow}: {text}")));
+            }
             Err(error) => told.push(format!("{flow}: {error}")),
         }
     }
