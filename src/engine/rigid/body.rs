@@ -77,6 +77,9 @@ pub struct RigidBody {
     contact: Wrench,
     /// Stiffness of all contacts of the step, about the centre.
     pub(crate) contact_stiffness: Wrench,
+    /// What drives have added to the velocity of the centre, m/s2, and to the angular velocity, 1/s2, in the
+    /// first half of this step.
+    pub(super) gained: [DVec3; 2],
 }
 
 impl RigidBody {
@@ -102,6 +105,7 @@ impl RigidBody {
             state,
             contact,
             contact_stiffness: Wrench::default(),
+            gained: [DVec3::ZERO; 2],
         }
     }
 

@@ -7,6 +7,7 @@ mod formulation;
 mod inertia;
 mod nodes;
 mod outline;
+mod prescribed;
 mod rotation;
 mod systems;
 #[cfg(test)]
@@ -20,6 +21,7 @@ pub use formulation::{Rigid, Rotation};
 pub(crate) use inertia::sphere_of;
 pub use nodes::{Nodes, RigidNode, Round};
 pub use outline::Rim;
+pub use prescribed::PrescribedAcceleration;
 pub use rotation::Inertia;
 pub(crate) use systems::{is_rigid, take_out};
 pub use wrench::Wrench;

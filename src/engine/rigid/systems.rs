@@ -177,7 +177,9 @@ impl Run for RigidDrift {
         let resources = step.resources;
         for body in resources.get_mut::<RigidBodies>().iter_mut().filter(|body| !body.state.gone) {
             // As for particles: what is prescribed is set first, then the forces kick what is free.
+            let before = [body.state.velocity, body.state.angular_velocity];
             let work = body.drive(false, &step.clock)?;
+            body.note_drives(before, 0.5 * dt);
             body.kick(0.5 * dt);
             step.ledger.add(constraints, body.id, work - 0.5 * dt * body.constraint_power());
             step.ledger.add(gravity_work, body.id, dt * body.mass * body.state.velocity.dot(self.gravity));

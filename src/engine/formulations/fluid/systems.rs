@@ -18,6 +18,7 @@ use crate::formulations::fluid::warnings::watch;
 use crate::pair::{BodyTerms, PhaseTerms, add_work_systems};
 use crate::plugin::{BodyKind, BodyPlan, SetupError, SimBuilder};
 use crate::removal::REMOVAL;
+use crate::rigid::RIGID_BODIES;
 use crate::schedule::{Access, Mode, Stage, System};
 use crate::world::{
     BodySet, Column, Density, DensityRate, Force, Mass, PhaseId, Pressure, ReferencePosition, Removed,
@@ -214,6 +215,7 @@ fn add_boundaries(sim: &mut SimBuilder<'_>, groups: &[Group], boundaries: Vec<Ph
                 .reads_own_packed()
                 .touches_packed(FLOW_RECORDS, Mode::Writes)
                 .touches_packed(FLOW_LOADS, Mode::ReadsNear)
+                .touches_packed(RIGID_BODIES, Mode::Reads)
                 .writes::<Pressure>()
                 .writes::<PreviousVelocity>(),
         );

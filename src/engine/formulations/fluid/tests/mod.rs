@@ -24,6 +24,8 @@ mod worn;
 
 mod ends;
 
+mod driven;
+
 mod thin;
 
 mod sub_cycled;

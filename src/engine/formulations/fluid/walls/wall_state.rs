@@ -9,6 +9,7 @@ use super::wall_pressure::{FluidBeside, WallPressure};
 use crate::formulations::fluid::cloud::{BoundarySurface, FlowCloud, Group, Role};
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::parallel::{Lanes4, for_each_block, for_each_own_block, own_rows};
+use crate::rigid::{PrescribedAcceleration, RigidBodies, RigidBody};
 use crate::schedule::{Run, Step, StepError};
 use crate::world::Pressure;
 
@@ -43,14 +44,18 @@ impl Run for WallState {
             });
         }
         let is_local = cloud.is_local();
+        let bodies = step.resources.try_get::<RigidBodies>();
         let FlowCloud { groups, records, fluid, .. } = &mut *cloud;
         for group in groups {
             let Role::Boundary(surface) = &group.role else { continue };
             let beside = &self.beside[group.cloud.start - *fluid..group.cloud.end - *fluid];
             let boundary = BoundaryStep { surface, gravity: self.gravity, dt: step.clock.dt };
             if surface.moved {
+                let is_own = |body: &&RigidBody| body.id == group.body;
+                let body = bodies.as_ref().and_then(|bodies| bodies.iter().find(is_own));
+                let known = body.and_then(RigidBody::prescribed_acceleration);
                 let rows = (&mut records[group.cloud.clone()], beside);
-                for_each_block(rows, &mut Vec::new(), &|_, rows| boundary.apply_to_solid(rows));
+                for_each_block(rows, &mut Vec::new(), &|_, rows| boundary.apply_to_solid(known, rows));
                 continue;
             }
             let view = step.world.phase(group.phase);
@@ -118,13 +123,15 @@ impl BoundaryStep<'_> {
     }
 
     /// The acceleration of a body that the fluid moves is left out: it would act on itself one step later, as
-    /// a mass that is added explicitly, and a light body would not stand it. What that lacks falls with the
-    /// spacing.
-    fn apply_to_solid(&self, (records, beside): MovedRows<'_>) {
+    /// a mass that is added explicitly, and a light body would not stand it. The resulting error falls with
+    /// the spacing. The prescribed part of it, `known`, does not depend on the fluid, and counts as that of
+    /// a wall.
+    fn apply_to_solid(&self, known: Option<PrescribedAcceleration>, (records, beside): MovedRows<'_>) {
         let Self { surface, gravity, .. } = *self;
         for (record, fluid) in records.iter_mut().zip(beside) {
             let v = record.velocity();
-            let mut p = fluid.pressure - gravity.dot(fluid.moment);
+            let acceleration = known.map_or(DVec3::ZERO, |known| known.at(record.position()));
+            let mut p = fluid.pressure - (gravity - acceleration).dot(fluid.moment);
             if !surface.suction {
                 p = p.max(0.0);
             }
