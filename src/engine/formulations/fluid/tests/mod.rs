@@ -26,6 +26,8 @@ mod ends;
 
 mod driven;
 
+mod sharp_edges;
+
 mod thin;
 
 mod sub_cycled;
