@@ -232,3 +232,27 @@ fn walls_that_pull_at_a_free_surface_are_warned_of() {
     assert!(told(true));
     assert!(!told(false));
 }
+
+/// A light disc rises in a closed tank: walls that do not pull give and take several hundredths of what gravity
+/// does, and nobody was told.
+#[test]
+fn a_body_that_rises_between_walls_that_do_not_pull_is_warned_of() {
+    let told = |suction: bool| {
+        let tank = format!(
+            r#"(dimension: Two, gravity: (0, -9.81), materials: {{"water": Fluid(density: 1000.0, sound_speed: 20.0),
+                "light": NeoHookean(density: 500.0, young: 1.0e6, poisson: 0.3)}},
+            bodies: [
+                (name: "water", material: "water", spacing: 0.025, formulation: Fluid,
+                 shape: Difference(Box(min: (-0.3, 0), max: (0.3, 1.5)), Sphere(center: (0, 0.3), radius: 0.1))),
+                (name: "tank", material: "wall", spacing: 0.025, formulation: Wall(slip: Free, suction: {suction}),
+                 shape: Difference(Box(min: (-0.4, -0.1), max: (0.4, 1.6)), Box(min: (-0.3, 0), max: (0.3, 1.5)))),
+                (name: "disc", material: "light", spacing: 0.025, formulation: Rigid(), shape: Sphere(center: (0, 0.3), radius: 0.1)),
+            ], time: (end: 0.6))"#
+        );
+        let mut sim = simulation(&tank);
+        sim.run(|_| true).expect("a run");
+        sim.warnings().iter().any(|text| text.contains("of the work that moves `water`"))
+    };
+    assert!(told(false));
+    assert!(!told(true));
+}

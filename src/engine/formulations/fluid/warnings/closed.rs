@@ -9,12 +9,14 @@ use serde::{Deserialize, Serialize};
 use super::filling::FillingPass;
 use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud, Group, RowSums};
 use crate::notation::quantity;
-use crate::schedule::Step;
+use crate::schedule::{AccountKind, Step};
 
 /// Particles of a free surface over those of a side of a square, or a cube, of as many particles.
 const SURFACE: f64 = 0.25;
 /// Energy taken by walls over the energy of compression that causes a warning.
 const TAKEN: f64 = 0.03;
+/// What they have given and taken in turn over the work of gravity, loads and motions that is.
+const EXCHANGED: f64 = 0.03;
 
 /// Watches the energy of compression, with which that of walls is compared at the end.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -22,6 +24,8 @@ pub struct ClosedWatch {
     is_told: bool,
     /// Largest energy of compression in the frames, J.
     largest: f64,
+    /// The most that walls and bodies have given or taken in the frames, J.
+    most: f64,
 }
 
 impl ClosedWatch {
@@ -34,12 +38,15 @@ impl ClosedWatch {
         step: &mut Step<'_>,
     ) {
         self.largest = self.largest.max(step.ledger.total_named("compression"));
+        self.most = self.most.max(step.ledger.total_named(ACCOUNTS[1]).abs());
         if !is_end || self.is_told || cloud.records().len() == cloud.fluid {
             return;
         }
         let found = match cloud.is_confined() {
             true => pulling_at_a_surface(cloud, scratch, step),
-            false => self.taken_by_walls(cloud, scratch, step),
+            false => self
+                .taken_by_walls(cloud, scratch, step)
+                .or_else(|| self.exchanged_with_walls(cloud, scratch, step)),
         };
         self.is_told = found.is_some();
         step.warnings.extend(found);
@@ -65,11 +72,41 @@ impl ClosedWatch {
             named(cloud, step),
             quantity(step.clock.time, "s"),
             100.0 * taken / self.largest,
-            match cloud.groups.iter().any(Group::is_wall) {
-                true => "; give the walls `Wall(suction: true)`",
-                false => "; without walls, bodies have suction in a domain that is periodic along all axes",
-            },
+            cure(cloud),
         ))
+    }
+
+    /// What walls that do not pull have given and taken in turn, over what has set a fluid without a free
+    /// surface in motion.
+    fn exchanged_with_walls(
+        &self,
+        cloud: &FlowCloud,
+        scratch: &mut Vec<Option<f64>>,
+        step: &Step<'_>,
+    ) -> Option<String> {
+        let supplied = step.ledger.accounts().iter().filter(|account| account.kind == AccountKind::Supplied);
+        let work: f64 = supplied.map(|account| account.total().abs()).sum();
+        // A fluid that settles at rest is given little work.
+        let is_worth = self.most > EXCHANGED * work && work > 0.1 * self.largest;
+        if !is_worth || !is_closed(cloud, scratch) {
+            return None;
+        }
+        Some(format!(
+            "walls and bodies have given {}, or taken as much, by {}, {:.0} % of the work that moves {}, without a free surface: bodies in it are up to a tenth too slow{}",
+            quantity(self.most, "J"),
+            quantity(step.clock.time, "s"),
+            100.0 * self.most / work,
+            named(cloud, step),
+            cure(cloud),
+        ))
+    }
+}
+
+/// What to do where walls and bodies do not pull.
+fn cure(cloud: &FlowCloud) -> &'static str {
+    match cloud.groups.iter().any(Group::is_wall) {
+        true => "; give the walls `Wall(suction: true)`",
+        false => "; without walls, bodies have suction in a domain that is periodic along all axes",
     }
 }
 
