@@ -1,5 +1,5 @@
-//! The acceleration of a rigid body as far as its motion is prescribed: what a fluid beside it can know before
-//! it has pushed the body.
+//! The acceleration of a rigid body as far as its motion is prescribed: what a fluid beside it can know
+//! before it has pushed the body.
 
 use glam::DVec3;
 
@@ -39,8 +39,8 @@ impl RigidBody {
         Some(PrescribedAcceleration { center: self.state.center, linear, angular, spin })
     }
 
-    /// Takes what drives have added to its velocities within `half` a step, s, since they were `before`, of the
-    /// centre and of the rotation.
+    /// Takes what drives have added to its velocities within `half` a step, s, since they were `before`, of
+    /// the centre and of the rotation.
     pub(super) fn note_drives(&mut self, before: [DVec3; 2], half: f64) {
         let per_time = if half > 0.0 { half.recip() } else { 0.0 };
         let turns = matches!(self.constraint.turning, Turning::Driven(_));

@@ -1,5 +1,5 @@
-//! Walls and rigid bodies whose motion is prescribed, from their first step on: the sound that they send out,
-//! the work that they do.
+//! Walls and rigid bodies whose motion is prescribed, from their first step on: the sound that they send
+//! out, the work that they do.
 
 use glam::DVec3;
 
@@ -50,8 +50,8 @@ fn expression(smooth: bool) -> String {
     if smooth { format!("{SPEED}*smoothstep(t/{START})") } else { SPEED.to_string() }
 }
 
-/// Pressure at a piston of that speed in a liquid at rest, Pa: that of a simple wave, of which that of a shock
-/// differs by the third power of the Mach number.
+/// Pressure at a piston of that speed in a liquid at rest, Pa: that of a simple wave, of which that of a
+/// shock differs by the third power of the Mach number.
 fn exact_pressure(speed: f64) -> f64 {
     SOUND * SOUND * DENSITY * ((speed / SOUND).exp() - 1.0)
 }
@@ -61,8 +61,8 @@ fn force_on_piston(sim: &Simulation) -> DVec3 {
     cloud.forces_on(BodyId(1)).expect("a wet piston").iter().map(|(force, _)| *force).sum()
 }
 
-/// Root mean square error of the force of a run over the force, and the error of the work that the piston does
-/// on the liquid over that work.
+/// Root mean square error of the force of a run over the force, and the error of the work that the piston
+/// does on the liquid over that work.
 fn errors(piston: &str, smooth: bool, spacing: f64) -> [f64; 2] {
     let mut sim = tube(piston, &expression(smooth), spacing, 1.0);
     sim.start().expect("a start");
@@ -71,19 +71,20 @@ fn errors(piston: &str, smooth: bool, spacing: f64) -> [f64; 2] {
         m.iter().zip(&v).map(|(m, v)| 0.5 * m.0 * v.0.length_squared()).sum()
     };
     let at_start = kinetic(&sim);
-    let (mut before, mut error, mut size, mut exact_work) = (0.0, 0.0, 0.0, 0.0);
+    let (mut before, mut error, mut size) = (0.0, 0.0, 0.0);
     sim.run(|sim| {
         let time = sim.clock().time;
         let exact = WIDTH * exact_pressure(speed(smooth, time));
         let dt = time - before;
         error += dt * (-force_on_piston(sim).x - exact).powi(2);
         size += dt * exact * exact;
-        let middle = speed(smooth, 0.5 * (before + time));
-        exact_work += dt * WIDTH * exact_pressure(middle) * middle;
         before = time;
         true
     })
     .expect("a run");
+    let part = sim.clock().time / 1000.0;
+    let speeds = (0..1000).map(|k| speed(smooth, part * (f64::from(k) + 0.5)));
+    let exact_work: f64 = speeds.map(|speed| part * WIDTH * exact_pressure(speed) * speed).sum();
     // A wall has no mass that its constraint speeds up.
     let own = if piston == RIGID { kinetic(&sim) - at_start } else { 0.0 };
     let work = sim.ledger().total_named("constraints") - own;
@@ -91,7 +92,8 @@ fn errors(piston: &str, smooth: bool, spacing: f64) -> [f64; 2] {
 }
 
 /// A body whose motion is prescribed pushes the liquid as a wall does. The pressure of its particles lacked
-/// its acceleration, which is known like that of a wall: forces were off by 25 and 8 %, walls by 10 and 4 %.
+/// its acceleration, which is known like that of a wall: forces were off by 25 and 8 %, walls by 10 and 4
+/// %.
 #[test]
 fn a_piston_that_starts_smoothly_has_the_force_of_its_sound_wave() {
     for piston in [WALL, RIGID] {
@@ -110,8 +112,9 @@ fn a_piston_that_starts_at_once_does_the_work_of_its_shock() {
     }
 }
 
-/// Momentum is what the force has given, from the first step on, and the first step has no error in the balance
-/// but that of the leapfrog: with the square of the step, over the work of that step, which itself has one.
+/// Momentum is what the force has given, from the first step on, and the first step has no error in the
+/// balance but that of the leapfrog: with the square of the step, over the work of that step, which itself
+/// has one.
 #[test]
 fn the_first_step_of_a_piston_is_booked_as_it_is_done() {
     for (piston, smooth) in [(WALL, false), (RIGID, false), (RIGID, true)] {
@@ -147,7 +150,8 @@ fn force_on_both(sim: &Simulation) -> DVec3 {
     on(1) + on(2)
 }
 
-/// A force that is there at once, on a body in a drop: all together have its impulse, from the first step on.
+/// A force that is there at once, on a body in a drop: all together have its impulse, from the first step
+/// on.
 #[test]
 fn a_body_that_is_pushed_from_the_start_gives_on_its_impulse() {
     let mut sim = double(
@@ -168,7 +172,7 @@ fn a_body_that_is_pushed_from_the_start_gives_on_its_impulse() {
         let of_oil: DVec3 = m.iter().zip(&v).map(|(m, v)| m.0 * v.0).sum();
         let exact = sim.clock().time * DVec3::new(50.0, -20.0, 0.0);
         let error = (of_core + of_oil - exact).length();
-        assert!(error < 1e-10 * exact.length(), "{}: {error}", sim.clock().step);
+        assert!(error <= 1e-10 * exact.length(), "{}: {error}", sim.clock().step);
         true
     })
     .expect("a run");

@@ -11,8 +11,8 @@ use crate::world::{BodyId, Density, Mass, Position, Pressure};
 const SOUND: f64 = 10.0;
 const DENSITY: f64 = 1000.0;
 
-/// A liquid eight particles across, a piston on the left that goes to 0.02 in 1.5 s, and another wall on the
-/// right.
+/// A liquid eight particles across, a piston on the left that goes to 0.02 in 1.5 s, and another wall on
+/// the right.
 fn vessel(more: &str, bodies: &str, right: &str) -> Simulation {
     vessel_with("slip: Free, suction: true", more, bodies, right)
 }
@@ -50,7 +50,8 @@ fn taken_by_walls(sim: &Simulation) -> f64 {
     sim.ledger().total_named("wall_pressure") / sim.ledger().total_named("constraints")
 }
 
-/// The fluid beside a piston saw half of its motion: .88 of the pressure, and walls took a tenth of the work.
+/// The fluid beside a piston saw half of its motion: .88 of the pressure, and walls took a tenth of the
+/// work.
 #[test]
 fn a_liquid_that_a_piston_presses_has_the_pressure_of_its_equation_of_state() {
     let domain = "domain: (min: (-2, 0), max: (3, 1), periodic: [Y]),";
@@ -61,7 +62,8 @@ fn a_liquid_that_a_piston_presses_has_the_pressure_of_its_equation_of_state() {
 }
 
 /// Between walls along which it slides it had .78, and these took a seventh of the work; as long as the
-/// particles of these stood still behind the edges of the piston, where the liquid leans on them, it had .93.
+/// particles of these stood still behind the edges of the piston, where the liquid leans on them, it had
+/// .93.
 #[test]
 fn a_liquid_between_walls_loses_nothing_to_them() {
     let sides = r#"
@@ -94,8 +96,8 @@ fn a_piston_in_a_cube_finds_the_pressure_too() {
     assert!(walls.abs() < 1e-3, "{walls}");
 }
 
-/// A piston whose face is inclined, between the walls along which it slides: at its ends it meets them at 60
-/// and 120 degrees.
+/// A piston whose face is inclined, between the walls along which it slides: at its ends it meets them at
+/// 60 and 120 degrees.
 #[test]
 fn an_inclined_piston_finds_the_pressure_too() {
     let slant = |y: f64| y / 3f64.sqrt();
@@ -157,8 +159,8 @@ fn the_volume_that_a_fluid_loses_is_what_its_walls_sweep() {
     assert!((swept / 0.02 - 1.0).abs() < 0.01, "{swept}");
 }
 
-/// Gates beside a floor: the fluid leans on the particles behind their lower edge, and what is done to these
-/// is the force on the gate.
+/// Gates beside a floor: the fluid leans on the particles behind their lower edge, and what is done to
+/// these is the force on the gate.
 #[test]
 fn a_gate_on_a_floor_bears_the_pressure_down_to_its_edge() {
     let mut sim = simulation(
@@ -233,8 +235,8 @@ fn walls_that_pull_at_a_free_surface_are_warned_of() {
     assert!(!told(false));
 }
 
-/// A light disc rises in a closed tank: walls that do not pull give and take several hundredths of what gravity
-/// does, and nobody was told.
+/// A light disc rises in a closed tank: walls that do not pull give and take several hundredths of what
+/// gravity does, and nobody was told.
 #[test]
 fn a_body_that_rises_between_walls_that_do_not_pull_is_warned_of() {
     let told = |suction: bool| {
