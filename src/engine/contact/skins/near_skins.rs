@@ -84,8 +84,8 @@ impl NearSkins {
         2.0 * (NEAR + 2.0 * STRETCHED * LONGEST[skins[0].facets.axes - 2]) * spacing
     }
 
-    /// Takes in a step in which points of both skins come closer by `way`, m, at most. Says whether the facets
-    /// have to be found again.
+    /// Takes in a step in which points of both skins come closer by `way`, m, at most. Says whether the
+    /// facets have to be found again.
     pub fn is_old(&mut self, way: f64) -> bool {
         self.left -= way;
         self.regions.iter_mut().for_each(|region| region.left -= way);

@@ -93,7 +93,8 @@ impl SkinPair {
     }
 
     /// The forces between two bodies, whose particles and points approach each other at most with these
-    /// speeds, m/s, after a step of `dt`, s; with the stiffness over an area that the next one goes by, N/m3 (N/m2 in two dimensions).
+    /// speeds, m/s, after a step of `dt`, s; with the stiffness over an area that the next one goes by, N/m3
+    /// (N/m2 in two dimensions).
     pub fn act(
         &mut self,
         views: [SkinView<'_>; 2],

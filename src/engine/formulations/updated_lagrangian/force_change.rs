@@ -2,8 +2,8 @@
 //!
 //! The motion up to an update has used the forces of the reference before it, and so does the second kick of
 //! that step; those of the new reference act from the next kick on. On either side of the update the leapfrog
-//! then is that of one reference, and an update takes nothing from the motion. Were the second kick one by the
-//! new forces, its work would not be that of any energy.
+//! then is that of one reference, and an update takes nothing from the motion. Were the second kick one by
+//! the new forces, its work would not be that of any energy.
 //!
 //! What has lost particles gets the new forces at once, and the difference is booked: forces between what has
 //! been removed or has failed and what is left must end together.
