@@ -36,7 +36,7 @@ impl<R: Region + ?Sized> Region for DifferenceRegion<R> {
         }
         let edge = || {
             let is_before_both = whole.min(-hole) > 0.0;
-            is_before_both.then(|| self.from_edge(point, whole, -hole)).flatten()
+            is_before_both.then(|| self.distance_to_edge(point, whole, -hole)).flatten()
         };
         self.through_opening(point, whole, hole).or_else(edge).unwrap_or(distance)
     }

@@ -47,7 +47,7 @@ impl<R: Region + ?Sized> DifferenceRegion<R> {
 
     /// Distance of a `point` outside of the whole by `of_whole` and inside of the hole by `in_hole` \[m\],
     /// where the nearest is the edge between the two faces; none where it is one of the faces.
-    pub(super) fn from_edge(&self, point: DVec3, of_whole: f64, in_hole: f64) -> Option<f64> {
+    pub(super) fn distance_to_edge(&self, point: DVec3, of_whole: f64, in_hole: f64) -> Option<f64> {
         let step = BESIDE * self.hole.bounds().extent().max_element();
         let faces = [
             normal(|x| self.whole.distance(x), point, step, self.axes),
