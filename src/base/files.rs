@@ -1,19 +1,19 @@
-//! Files of users: read whole, up to a limit.
+//! Reading of whole input files, up to a size limit.
 
 use std::fs::File;
 use std::io::{Error, Read};
 use std::path::Path;
 
-/// Largest scene, and largest input that is no regular file, B.
+/// Maximum size of a scene, and of an input that is not a regular file, B.
 pub(crate) const LARGEST_TEXT: u64 = 64 << 20;
-/// Largest mesh or particle file, B.
+/// Maximum size of a mesh or particle file, B.
 pub(crate) const LARGEST_GEOMETRY: u64 = 4 << 30;
 
-/// The content of a file of at most `limit` bytes. A device or pipe has no length; it is read to the limit of
-/// texts.
+/// The content of a file of at most `limit` bytes. A device or pipe has no length, so the limit for scenes
+/// applies to it.
 ///
 /// # Errors
-/// It cannot be read, or is longer.
+/// The file cannot be read, or is longer than the limit.
 pub(crate) fn read(path: &Path, limit: u64) -> Result<Vec<u8>, Error> {
     let file = File::open(path)?;
     let data = file.metadata()?;
@@ -37,7 +37,7 @@ mod tests {
         std::fs::write(file.path(), [b'x'; 100]).unwrap();
         assert_eq!(read(file.path(), 100).unwrap().len(), 100);
         assert!(read(file.path(), 99).unwrap_err().to_string().contains("longer than"));
-        // A sparse file has a length and no content: nothing of it is read.
+        // A sparse file has a length and no content, so it is rejected before it is read.
         file.as_file().set_len(LARGEST_GEOMETRY + 1).unwrap();
         assert!(read(file.path(), LARGEST_GEOMETRY).is_err());
     }

@@ -1,9 +1,8 @@
-//! What the engine of `meshless` stands on: linear algebra, parallel loops, kernels, neighbour search,
-//! shapes, and the language of scenes.
+//! The base modules of the engine of `meshless`: linear algebra, parallel loops, kernels, neighbour search,
+//! shapes, and the scene language.
 //!
-//! Nothing here knows particles with columns, systems or formulations. The package `meshless_engine` passes
-//! all of it on; who extends the program depends on that one alone. The two are compiled one beside the
-//! other.
+//! Nothing here depends on particle columns, systems or formulations. The package `meshless_engine`
+//! re-exports all of it, and extensions depend on that package alone. The two are compiled in parallel.
 
 pub mod correction;
 mod files;

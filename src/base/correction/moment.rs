@@ -1,15 +1,15 @@
-//! Moment matrix of a row of neighbours, and its inverse.
+//! Moment matrix of a row of a neighbour list, and its inverse.
 
 use crate::linalg::Sym3;
 use crate::parallel::Lanes4;
 use glam::DVec3;
 
-/// Least determinant of a moment matrix in units of `(tr M / d)^d`: below it the neighbours lie on a line
-/// (or, in three dimensions, in a plane) to within about a thousandth of their distance, or are too few.
+/// Minimum determinant of a moment matrix in units of `(tr M / d)^d`. Below it the neighbours are too few, or
+/// are collinear (in three dimensions coplanar) to within about a thousandth of their distance.
 pub const SINGULAR: f64 = 1e-6;
 
-/// `M_i = sum_j V_j w_ij x_ij (x) x_ij`, dimensionless: near the identity inside a body, about half of it at
-/// a face.
+/// `M_i = sum_j V_j w_ij x_ij (x) x_ij`, dimensionless. It is near the identity inside a body and about half
+/// of it at a free surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MomentMatrix {
     matrix: Sym3,
@@ -17,19 +17,19 @@ pub struct MomentMatrix {
 }
 
 impl MomentMatrix {
-    /// The matrix of no neighbours in 1, 2 or 3 dimensions.
+    /// The zero matrix, in 1, 2 or 3 dimensions.
     #[inline]
     pub const fn new(dimension: usize) -> Self {
         Self { matrix: Sym3::ZERO, dimension }
     }
 
-    /// The matrix with that sum.
+    /// The matrix of a given sum.
     #[inline]
     pub const fn of(matrix: Sym3, dimension: usize) -> Self {
         Self { matrix, dimension }
     }
 
-    /// The matrix with those columns, in as many dimensions as there are.
+    /// The matrix of the given columns, whose number is the dimension.
     #[inline(always)]
     pub fn of_columns<const D: usize>(columns: &[Lanes4; D]) -> Self {
         let [x, y] = [columns[0].0, columns[1].0];
@@ -38,8 +38,8 @@ impl MomentMatrix {
         Self::of(columns.get(2).map_or(plane, solid), D)
     }
 
-    /// Adds a neighbour by `V_j w_ij` (m^-2) and `x_ij` (m); neighbours are to come in the order of their
-    /// row.
+    /// Adds a neighbour by `V_j w_ij` (m^-2) and `x_ij` (m); for a reproducible sum neighbours are added in
+    /// the order of their row.
     #[inline]
     pub fn add(&mut self, volume_weight: f64, x_ij: DVec3) {
         self.matrix += Sym3::dyad(x_ij) * volume_weight;
@@ -51,15 +51,15 @@ impl MomentMatrix {
         &self.matrix
     }
 
-    /// The correction matrix `M_i^-1`, with zeros along the axes that the dimension lacks, so that corrected
-    /// gradients never leave the line or the plane. `None` where the moment matrix is singular, see
-    /// [`SINGULAR`], or not finite: such a particle has no deformation gradient and is free of stress.
+    /// The correction matrix `M_i^-1`, with zeros along axes beyond the dimension: corrected gradients stay
+    /// on the line or in the plane. `None` where the moment matrix is singular, see [`SINGULAR`], or not
+    /// finite: such a particle has no deformation gradient and no stress.
     #[inline]
     pub fn inverse(&self) -> Option<Sym3> {
         self.inverse_above(SINGULAR)
     }
 
-    /// The same with another least determinant, in units of `(tr M / d)^d`.
+    /// The correction matrix with another minimum determinant, in units of `(tr M / d)^d`.
     #[inline]
     pub fn inverse_above(&self, least: f64) -> Option<Sym3> {
         let m = &self.matrix;
@@ -74,7 +74,7 @@ impl MomentMatrix {
             _ => (m.determinant(), m.trace() / 3.0, m.inverse()),
         };
         let limit = least * mean.powi(self.dimension.clamp(1, 3) as i32);
-        // Strictly greater: without neighbours both sides are zero, and NaN is refused too.
+        // Strictly greater, because both sides are zero without neighbours; the comparison rejects NaN too.
         (determinant > limit && determinant.is_finite()).then_some(inverse)
     }
 }

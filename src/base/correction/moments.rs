@@ -1,4 +1,4 @@
-//! The moment matrix of neighbours, summed lane by lane.
+//! The moment matrix, summed over neighbours in SIMD lanes.
 
 use glam::DVec3;
 
@@ -7,7 +7,7 @@ use crate::linalg::Sym3;
 use crate::parallel::{Arithmetic, Number, Vector};
 
 /// Adds neighbours by `V_j w_ij` (m^-2) and `x_ij` (m) to the sums of a moment matrix `sum_j V_j w_ij x_ij
-/// (x) x_ij`: products of a component with all of those from it on, which are xx, xy, xz; yy, yz; zz.
+/// (x) x_ij`: the upper triangle, in the order xx, xy, xz; yy, yz; zz.
 #[inline(always)]
 pub fn add_moment<A: Arithmetic>([x, y, z]: [&mut Vector<A>; 3], volume_weight: Number<A>, x_ij: Vector<A>) {
     let weighed = x_ij * volume_weight;
@@ -19,7 +19,7 @@ pub fn add_moment<A: Arithmetic>([x, y, z]: [&mut Vector<A>; 3], volume_weight: 
     }
 }
 
-/// The moment matrix of sums that [`add_moment`] has made, in the plane or in space.
+/// The moment matrix of the sums of [`add_moment`], in two or three dimensions.
 #[inline(always)]
 pub fn moment_of([x, y, z]: [DVec3; 3], plane: bool) -> MomentMatrix {
     let matrix = Sym3 { xx: x.x, yy: y.y, zz: z.z, xy: x.y, xz: x.z, yz: y.z };

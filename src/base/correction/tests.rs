@@ -1,4 +1,4 @@
-//! Case K1: corrected gradients are exact for linear fields; singular neighbourhoods are refused.
+//! Case K1: corrected gradients are exact for linear fields; singular neighbourhoods are rejected.
 
 use super::MomentMatrix;
 use crate::kernels::{Kernel, KernelName};
@@ -12,14 +12,14 @@ fn moment_matrix(dimension: usize, neighbors: impl IntoIterator<Item = (f64, DVe
     moment
 }
 
-/// Correction matrix of a given moment matrix, made of one neighbour along each eigenvector.
+/// Correction matrix of a given moment matrix, which is the sum over one neighbour along each eigenvector.
 fn correction_matrix(moment: &Sym3, dimension: usize) -> Option<Sym3> {
     let eigen = Eigen::new(moment);
     let axes = [eigen.vectors.x_axis, eigen.vectors.y_axis, eigen.vectors.z_axis];
     moment_matrix(dimension, eigen.values.to_array().into_iter().zip(axes)).inverse()
 }
 
-/// Particles of a lattice of spacing one, shifted by up to 0.4, with volumes that vary by 30 %.
+/// Particles of a lattice of spacing one, perturbed by up to 0.4, with volumes that vary by 30 %.
 fn disordered(dimension: usize) -> (Vec<DVec3>, Vec<f64>) {
     let n = [40_usize, 14, 8][dimension - 1];
     let mut state = 11_u64;

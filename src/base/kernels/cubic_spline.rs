@@ -3,7 +3,7 @@
 use super::profile::{KernelProfile, below};
 use std::f64::consts::PI;
 
-/// `f = (2 - q)^3 - 4 (1 - q)^3`, each bracket where it is positive; support 2 h.
+/// `f = (2 - q)^3 - 4 (1 - q)^3`, each bracket clipped below at zero; support 2 h.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct CubicSpline;
 
@@ -32,7 +32,7 @@ impl KernelProfile for CubicSpline {
 
     #[inline]
     fn weight(q: f64) -> f64 {
-        // Both at once, without a branch; where q is zero the second one has no meaning.
+        // Both quotients are computed without a branch; the second one is meaningless at q = 0.
         let (near, far) = (12.0 - 9.0 * q, 3.0 * below(2.0, q) * (2.0 / q - 1.0));
         if q < 1.0 { near } else { far }
     }

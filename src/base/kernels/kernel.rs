@@ -6,7 +6,7 @@ use super::registry::{KernelName, KernelVisitor};
 
 /// Kernel of a given dimension, chosen at run time.
 ///
-/// Its functions branch on the name in each call: loops over pairs use [`Kernel::dispatch`] instead.
+/// Its functions branch on the name in each call, so loops over pairs use [`Kernel::dispatch`] instead.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Kernel {
     name: KernelName,
@@ -20,13 +20,13 @@ impl Kernel {
         Some(Self { name, dimension: dimension as u32, normalisation: name.normalisation(dimension)? })
     }
 
-    /// The kernel that scenes call `name`; `None` if there is none or `dimension` is not 1, 2 or 3.
+    /// The kernel registered as `name`; `None` if there is none or `dimension` is not 1, 2 or 3.
     pub fn named(name: &str, dimension: usize) -> Option<Self> {
         let name = KernelName::ALL.iter().find(|known| known.as_str() == name)?;
         Self::new(*name, dimension)
     }
 
-    /// Every name that [`Kernel::named`] knows, in the order of registration.
+    /// All registered names, in the order of registration.
     pub fn names() -> impl Iterator<Item = &'static str> {
         KernelName::ALL.iter().map(|name| name.as_str())
     }
@@ -87,8 +87,8 @@ impl Kernel {
         self.dispatch(Curvature(r, smoothing_length))
     }
 
-    /// Pair weight `w = |dW/dr| / r >= 0` (1/m^(d+2)), so that `grad_i W = w x_ij`. At r = 0: the limit, and
-    /// zero for the spiky kernel, which has none.
+    /// Pair weight `w = |dW/dr| / r >= 0` (1/m^(d+2)), so that `grad_i W = w x_ij`. At r = 0 it is the limit,
+    /// or zero for the spiky kernel, whose limit is infinite.
     pub fn pair_weight(&self, r: f64, smoothing_length: f64) -> f64 {
         struct Weight(f64, f64);
         impl KernelVisitor for Weight {

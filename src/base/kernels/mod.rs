@@ -1,11 +1,11 @@
 //! Smoothing kernels W(r, h).
 //!
-//! A kernel is a profile f(q), q = r / h, scaled to unit integral: `W(r, h) = sigma_d / h^d f(r / h)`. Two
-//! lengths are never confused: the *smoothing length* h in which profiles are written, and the *support
-//! radius* H = SUPPORT x h at and beyond which W is exactly zero. Derivatives are with respect to r; the pair
-//! weight is `w = |W'(r)| / r >= 0`, so that `grad_i W = w x_ij` with `x_ij = x_j - x_i`.
+//! A kernel is a profile f(q), q = r / h, scaled to unit integral: `W(r, h) = sigma_d / h^d f(r / h)`.
+//! Profiles are written in the *smoothing length* h. W is exactly zero at and beyond the *support radius* H =
+//! SUPPORT x h. Derivatives are with respect to r; the pair weight is `w = |W'(r)| / r >= 0`, so that `grad_i
+//! W = w x_ij` with `x_ij = x_j - x_i`.
 //!
-//! To add a kernel: one file with its [`KernelProfile`] and one line in `registry.rs`.
+//! A new kernel needs one file with its [`KernelProfile`] and one line in `registry.rs`.
 
 mod cubic_spline;
 mod kernel;

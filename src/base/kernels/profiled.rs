@@ -1,4 +1,4 @@
-//! A kernel as a type, for hot loops.
+//! A kernel as a type parameter, for hot loops.
 
 use super::profile::KernelProfile;
 use std::marker::PhantomData;
@@ -16,8 +16,8 @@ impl<K: KernelProfile> ProfiledKernel<K> {
         Self { dimension, normalisation, profile: PhantomData }
     }
 
-    /// The kernel of one smoothing length (m). Costs two divisions: outside the loop where h is the same for
-    /// all.
+    /// The kernel of one smoothing length (m). It costs two divisions, so it is computed outside the loop
+    /// where h is uniform.
     #[inline]
     pub fn scaled(&self, smoothing_length: f64) -> ScaledKernel<K> {
         let inverse_h = 1.0 / smoothing_length;
@@ -30,7 +30,7 @@ impl<K: KernelProfile> ProfiledKernel<K> {
     }
 }
 
-/// Kernel of one smoothing length: functions of the distance r (m) alone.
+/// Kernel of one smoothing length, whose functions depend on the distance r (m) alone.
 #[derive(Debug, Clone, Copy)]
 pub struct ScaledKernel<K: KernelProfile> {
     inverse_h: f64,

@@ -3,7 +3,7 @@
 use super::profile::{KernelProfile, below};
 use std::f64::consts::PI;
 
-/// `f = (5/2 - q)^4 - 5 (3/2 - q)^4 + 10 (1/2 - q)^4`, each bracket where it is positive; support 2.5 h.
+/// `f = (5/2 - q)^4 - 5 (3/2 - q)^4 + 10 (1/2 - q)^4`, each bracket clipped below at zero; support 2.5 h.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct QuarticSpline;
 
@@ -37,7 +37,7 @@ impl KernelProfile for QuarticSpline {
         12.0 * (a - 5.0 * b + 10.0 * c)
     }
 
-    /// Below q = 1/2 the brackets cancel: `f' = 24 q^3 - 30 q` exactly, without the cancellation.
+    /// Below q = 1/2 the powers cancel: `f' = 24 q^3 - 30 q` exactly, without loss of digits.
     #[inline]
     fn weight(q: f64) -> f64 {
         if q < 0.5 { 30.0 - 24.0 * q * q } else { -Self::derivative(q) / q }

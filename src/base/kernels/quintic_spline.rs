@@ -1,9 +1,9 @@
-//! Quintic B-spline: C4, wide; little noise on disordered particles.
+//! Quintic B-spline: C4, wide support; little noise on disordered particles.
 
 use super::profile::{KernelProfile, below};
 use std::f64::consts::PI;
 
-/// `f = (3 - q)^5 - 6 (2 - q)^5 + 15 (1 - q)^5`, each bracket where it is positive; support 3 h.
+/// `f = (3 - q)^5 - 6 (2 - q)^5 + 15 (1 - q)^5`, each bracket clipped below at zero; support 3 h.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct QuinticSpline;
 
@@ -37,7 +37,7 @@ impl KernelProfile for QuinticSpline {
         20.0 * (a - 6.0 * b + 15.0 * c)
     }
 
-    /// Below q = 1 the brackets cancel: `f' = -120 q + 120 q^3 - 50 q^4` exactly, without the cancellation.
+    /// Below q = 1 the powers cancel: `f' = -120 q + 120 q^3 - 50 q^4` exactly, without loss of digits.
     #[inline]
     fn weight(q: f64) -> f64 {
         if q < 1.0 { 120.0 + q * q * (50.0 * q - 120.0) } else { -Self::derivative(q) / q }

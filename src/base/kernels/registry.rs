@@ -1,17 +1,17 @@
-//! The list of kernels, and how a name in a scene becomes code compiled for that kernel.
+//! The registry of kernels, and the dispatch from a name in a scene to code compiled for that kernel.
 
 use super::profile::KernelProfile;
 use super::profiled::ProfiledKernel;
 use super::{CubicSpline, QuarticSpline, QuinticSpline, Spiky, WendlandC2, WendlandC4, WendlandC6};
 use std::fmt;
 
-/// Code that is compiled once for every kernel, so that the kernel is inlined in its loops; see
+/// Code that is compiled once for every kernel, which is inlined in its loops; see
 /// [`Kernel::dispatch`](super::Kernel::dispatch).
 pub trait KernelVisitor {
     /// Result of the code.
     type Output;
 
-    /// Runs the code with the kernel as a type.
+    /// Runs the code with the kernel as a type parameter.
     fn visit<K: KernelProfile>(self, kernel: ProfiledKernel<K>) -> Self::Output;
 }
 

@@ -1,4 +1,4 @@
-//! Desbrun's spiky kernel: a gradient that does not vanish at the centre; the kernel of total-Lagrangian
+//! Desbrun's spiky kernel, whose gradient does not vanish at the centre; the kernel of total-Lagrangian
 //! solids.
 
 use super::profile::{KernelProfile, below};

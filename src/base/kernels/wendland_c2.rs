@@ -1,4 +1,4 @@
-//! Wendland C2: the usual kernel of weakly compressible fluids; does not pair.
+//! Wendland C2: the usual kernel of weakly compressible fluids; it has no pairing instability.
 
 use super::profile::{KernelProfile, below};
 use std::f64::consts::PI;

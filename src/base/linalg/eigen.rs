@@ -14,11 +14,11 @@ pub struct Eigen {
 
 impl Eigen {
     /// Decomposes a matrix: accurate to rounding relative to the largest eigenvalue, repeated eigenvalues
-    /// included (Golub & Van Loan, Matrix Computations, section 8.5). NaN and infinities come out as NaN.
+    /// included (Golub & Van Loan, Matrix Computations, section 8.5). NaN and infinities give NaN.
     pub fn new(a: &Sym3) -> Self {
         let mut m = a.to_matrix().to_cols_array_2d();
         let mut v = DMat3::IDENTITY.to_cols_array_2d();
-        // Convergence is quadratic: five sweeps are usual, the limit only ends loops on NaN.
+        // Convergence is quadratic and usually takes five sweeps; the limit only ends loops on NaN.
         for _ in 0..20 {
             let off = m[0][1].abs() + m[0][2].abs() + m[1][2].abs();
             if off == 0.0 {
@@ -29,8 +29,7 @@ impl Eigen {
                     continue;
                 }
                 let theta = (m[q][q] - m[p][p]) / (2.0 * m[p][q]);
-                // No `hypot`, a call of the library: where the square is too large for a number, the angle is
-                // zero to rounding.
+                // `hypot` would be a library call. Where the square overflows, the angle is zero to rounding.
                 let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
                 let c = 1.0 / (t * t + 1.0).sqrt();
                 let s = t * c;

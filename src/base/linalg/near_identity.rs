@@ -1,11 +1,11 @@
 //! Logarithm and exponential of symmetric matrices near the identity, such as elastic strains of metals.
 //!
-//! Closed forms with eigenvectors lose their digits where eigenvalues nearly coincide; series are most
-//! accurate there. Far from the identity the spectral decomposition takes over.
+//! Closed forms with eigenvectors lose digits where eigenvalues nearly coincide, whereas series are most
+//! accurate there. The spectral decomposition is used far from the identity.
 
 use super::{Eigen, Sym3};
 
-/// Largest |A - I| (and |A| of the exponential) that the series take.
+/// Maximum |A - I| (and |A| of the exponential) for which the series are used.
 const NEAR: f64 = 0.1;
 
 impl Sym3 {
@@ -28,9 +28,10 @@ impl Sym3 {
         Self { xx: self.xx + s, yy: self.yy + s, zz: self.zz + s, ..*self }
     }
 
-    /// Half of the logarithm of a positive definite matrix: of `b = V^2` the logarithmic strain `ln V`.
+    /// Half of the logarithm of a positive definite matrix. For `b = V^2` it is the logarithmic strain `ln
+    /// V`.
     ///
-    /// Near the identity it is artanh(Z) with Z = (A - I)(A + I)^-1, to 4e-12 of |Z|.
+    /// Near the identity it is computed as artanh(Z) with Z = (A - I)(A + I)^-1, to 4e-12 of |Z|.
     #[inline(always)]
     pub fn half_log(&self) -> Self {
         let x = self.plus_diagonal(-1.0);
@@ -45,7 +46,7 @@ impl Sym3 {
         }
     }
 
-    /// The exponential, to 2e-13 by its series where the matrix is small.
+    /// The matrix exponential, by its series to 2e-13 where the matrix is small.
     #[inline(always)]
     pub fn exp(&self) -> Self {
         if self.double_dot(self) <= NEAR * NEAR {

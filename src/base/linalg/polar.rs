@@ -4,8 +4,8 @@ use super::Sym3;
 use glam::DMat3;
 
 /// Rotation R and right stretch U of `F = R U`, by Newton's iteration with scaling (Higham 1986, SIAM Journal
-/// on Scientific and Statistical Computing 7, 1160-1174). `None` where F does not keep orientation (`det F <=
-/// 0`), is singular to working precision, or is not finite.
+/// on Scientific and Statistical Computing 7, 1160-1174). `None` where F does not preserve orientation (`det
+/// F <= 0`), is singular to working precision, or is not finite.
 pub fn polar(f: DMat3) -> Option<(DMat3, Sym3)> {
     let norm = |a: &DMat3| {
         (a.x_axis.length_squared() + a.y_axis.length_squared() + a.z_axis.length_squared()).sqrt()
@@ -15,14 +15,14 @@ pub fn polar(f: DMat3) -> Option<(DMat3, Sym3)> {
         return None;
     }
     let mut r = f;
-    // Quadratic from any F: about nine iterations at a condition number of 1e15.
+    // Convergence is quadratic from any F and takes about nine iterations at a condition number of 1e15.
     for _ in 0..30 {
         let inverse_transpose = r.inverse().transpose();
         let scale = (norm(&inverse_transpose) / norm(&r)).sqrt();
         let next = (r * scale + inverse_transpose * (1.0 / scale)) * 0.5;
         let change = norm(&(next - r));
         r = next;
-        // Half the digits before the step are all of them after it.
+        // The step doubles the number of correct digits.
         if change < 1e-9 {
             break;
         }

@@ -2,17 +2,17 @@
 
 use super::Sym3;
 
-/// Limit of the iterations; it only ends those on NaN.
+/// Maximum number of iterations; it is only reached on NaN.
 const MOST: usize = 20;
-/// Squared change of the result, over its square, after which the next one is exact to round-off: convergence
+/// Squared relative change of the result, below which the next iterate is exact to round-off, as convergence
 /// is quadratic.
 const SMALL: f64 = 1e-18;
 
 impl Sym3 {
     /// A^(-1/2) of a positive definite matrix, by the coupled iteration of Denman and Beavers (1976, Applied
     /// Mathematics and Computation 2, 63-94), whose iterates are symmetric because all of them have the
-    /// principal directions of A. Four iterations near the identity, eight where the eigenvalues are a
-    /// thousand times apart.
+    /// principal directions of A. It takes four iterations near the identity, and eight where the ratio of
+    /// the eigenvalues is a thousand.
     pub fn inverse_root(&self) -> Self {
         let (mut root, mut inverse) = (*self, Self::IDENTITY);
         for _ in 0..MOST {

@@ -1,10 +1,10 @@
-//! Symmetric 3 x 3 matrix in six numbers.
+//! Symmetric 3 x 3 matrix stored as six components.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat3, DVec3};
 use std::ops::{Add, AddAssign, Mul, Neg, Sub};
 
-/// Symmetric 3 x 3 matrix: stress, strain, moment and correction matrices in three quarters of the memory
+/// Symmetric 3 x 3 matrix: stress, strain, moment and correction matrices, with three quarters of the memory
 /// traffic of a `DMat3`.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable, serde::Serialize, serde::Deserialize)]
 #[repr(C)]

@@ -85,7 +85,7 @@ proptest! {
 
     #[test]
     fn logarithm_and_exponential_agree_with_jacobi(r in rotation(), e in vector(), size in 0.0..0.2_f64) {
-        // On both sides of the change from series to eigenvalues, and where eigenvalues coincide.
+        // On both sides of the switch from series to eigenvalues, and with coincident eigenvalues.
         for strain in [e * size, DVec3::splat(e.x * size), DVec3::new(e.x, e.x, e.y) * size] {
             let of = |f: fn(f64) -> f64| Sym3::symmetric_part(r * DMat3::from_diagonal(strain.map(f)) * r.transpose());
             let square = of(|e| (2.0 * e).exp());

@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use super::periodic::SHIFT;
 
-/// Share by which a cell is longer than half of the radius: more than round-off where positions are below
-/// 10^8 radii, so that the length of a cell depends on the radius alone.
+/// Relative excess of the cell length over half of the radius. It exceeds round-off for positions below 10^8
+/// radii, so that the cell length depends on the radius alone.
 const ROOM: f64 = 1e-6;
 
 /// A range of coordinates, m.
@@ -22,11 +22,11 @@ pub(super) struct AxisPeriod {
     pub length: f64,
 }
 
-/// Cells along one axis. Their corners are whole multiples of their length, or whole parts of a period: which
-/// particles share a cell, and the order of cells, do not hang on which particles there are.
+/// Cells along one axis. Their corners are integer multiples of their length, or integer fractions of a
+/// period. The cell of a particle, and the order of cells, are therefore independent of the other particles.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct CellAxis {
-    /// Start of a period, m; zero where there is none.
+    /// Start of the period, m; zero on an axis that is not periodic.
     origin: f64,
     /// Number of the first cell, counted from the origin.
     first: i64,
@@ -36,7 +36,7 @@ pub(super) struct CellAxis {
     inverse_period: f64,
     /// Bound of the round-off in distances, m.
     round_off: f64,
-    /// Number of cells, and of buckets that they are folded into.
+    /// Number of cells, and number of buckets onto which they are folded.
     pub cells: i64,
     pub buckets: i64,
 }
@@ -52,12 +52,12 @@ impl CellAxis {
         8.0 * f64::EPSILON * reach
     }
 
-    /// Cells of half of `radius`, of somewhat more on a periodic axis: in a range, or in a period.
+    /// Cells of half of `radius` in a range, or of slightly more in a period.
     pub fn new(range: AxisRange, radius: f64, period: Option<AxisPeriod>, round_off: f64) -> Self {
         let AxisRange { min, max } = range;
         let mut cell = 0.5 * radius * (1.0 + ROOM);
-        // Rounding of the cell number must not put two particles within the radius farther apart than cells
-        // are looked at.
+        // Rounding of the cell number must not place two particles within the radius outside the searched
+        // cells.
         while cell < 0.5 * (radius + round_off) {
             cell *= 2.0;
         }
@@ -72,24 +72,24 @@ impl CellAxis {
         Self { origin, first: 0, inverse_cell, inverse_period, round_off, cells: cells as i64, buckets: 1 }
     }
 
-    /// Whether cells are buckets, side by side.
+    /// Whether each cell is a bucket of its own, in the same order.
     pub fn is_plain(&self) -> bool {
         self.cells == self.buckets && self.inverse_period == 0.0
     }
 
-    /// A coordinate in cells, on an axis that is not periodic.
+    /// A coordinate in units of cells, on an axis that is not periodic.
     #[inline(always)]
     pub fn place(&self, x: f64) -> f64 {
         x * self.inverse_cell - self.first as f64
     }
 
-    /// A length in cells, round-off included.
+    /// A length in units of cells, round-off included.
     #[inline(always)]
     pub fn length(&self, radius: f64) -> f64 {
         (radius * (1.0 + 1e-9) + self.round_off) * self.inverse_cell
     }
 
-    /// Bucket of a coordinate: that of the last cell for those beyond.
+    /// Bucket of a coordinate, clamped to that of the last cell.
     #[inline(always)]
     pub fn bucket_of(&self, x: f64) -> i64 {
         let cell = self.cell_of(x);
@@ -101,30 +101,31 @@ impl CellAxis {
         self.cells != self.buckets
     }
 
-    /// Cell of a coordinate: the last one for those beyond.
+    /// Cell of a coordinate, clamped to the last one.
     #[inline(always)]
     pub fn cell_of(&self, x: f64) -> i64 {
         self.cell(x).clamp(0, self.cells - 1)
     }
 
-    /// Cell of a coordinate; outside 0..cells for one outside the box of a bounded axis.
+    /// Cell of a coordinate, unclamped: outside 0..cells for a coordinate outside the bounds of a bounded
+    /// axis.
     #[inline(always)]
     fn cell(&self, x: f64) -> i64 {
         if self.inverse_period > 0.0 {
             let turns = (x - self.origin) * self.inverse_period;
             (((turns - turns.floor()) * self.cells as f64) as i64).min(self.cells - 1)
         } else {
-            // Whole numbers first: rounding must not depend on which cell is the first.
+            // Rounding comes before the subtraction, so that it is independent of the first cell.
             whole(x * self.inverse_cell).saturating_sub(self.first)
         }
     }
 
-    /// The cells within a length, in cells, of a place; for axes that are not periodic.
+    /// The cells within a distance, in cells, of a coordinate, on axes that are not periodic.
     #[inline(always)]
     pub fn span(&self, place: f64, reach: f64) -> Range<u32> {
         let last = (self.cells - 1) as f64;
         let (first, end) = (place - reach, place + reach);
-        // In this way round all cells are within what is no number.
+        // With this order of the comparison all cells are within NaN.
         let first = if first > 0.0 { first } else { 0.0 };
         let first = if first < last + 1.0 { first } else { last + 1.0 };
         let end = if end < -1.0 { -1.0 } else { end };
@@ -132,7 +133,7 @@ impl CellAxis {
         rounded(first - 0.5)..rounded(end + 0.5)
     }
 
-    /// Buckets of the cells within the radius, m, of the cell of a coordinate, ascending, each once.
+    /// Buckets of the cells within the radius, m, of the cell of a coordinate, ascending, without duplicates.
     pub fn around(&self, x: f64, radius: f64, found: &mut Vec<i64>) {
         found.clear();
         let (cell, reach) = (self.cell(x), (self.length(radius) - 1e-9).ceil() as i64);
@@ -149,22 +150,22 @@ impl CellAxis {
     }
 }
 
-/// The nearest of whole numbers from zero to 2^31. Halves may go to either side: what that takes away is
-/// beyond the reach, which is longer than asked for.
+/// Rounds to the nearest integer from zero to 2^31. Halves may round either way: the cell lost by that is
+/// outside the radius, because the search distance includes a margin.
 #[inline(always)]
 fn rounded(x: f64) -> u32 {
     (x + SHIFT).to_bits() as u32
 }
 
-/// Rounded down, without a call of the library.
+/// The floor function, without a library call.
 #[inline(always)]
 fn whole(x: f64) -> i64 {
     let whole = x as i64;
     whole - i64::from(x < whole as f64)
 }
 
-/// Numbers of buckets: the cells themselves, or fewer so that their product stays in proportion to the
-/// particles.
+/// Numbers of buckets along the axes: the numbers of cells, or fewer, so that their product stays
+/// proportional to the number of particles.
 pub(super) fn fold_into_buckets(axes: &mut [CellAxis; 3], particles: usize) {
     let mut room = (4 * particles + 64).min(u32::MAX as usize - 2) as i64;
     let mut order = [0, 1, 2];
@@ -174,8 +175,7 @@ pub(super) fn fold_into_buckets(axes: &mut [CellAxis; 3], particles: usize) {
         let share = (room as f64).powf(1.0 / (3 - done) as f64) as i64;
         let mut buckets = axes[a].cells.min(share.max(1));
         if buckets < axes[a].cells {
-            // Without a common divisor, a diagonal line of cells meets every bucket before it meets one
-            // again.
+            // Without a common divisor, a diagonal line of cells visits every bucket before it repeats one.
             while folded.iter().any(|&other| greatest_common_divisor(other, buckets) > 1) {
                 buckets -= 1;
             }
@@ -201,8 +201,8 @@ mod tests {
             fold_into_buckets(&mut axes, particles);
             let buckets = axes.map(|axis| axis.buckets);
             let product: i64 = buckets.iter().product();
-            // The diagonal returns to its first bucket after the least common multiple: no number up to the
-            // largest divides two of them.
+            // The diagonal returns to its first bucket after the least common multiple, so no integer up to
+            // the largest may divide two of them.
             for divisor in 2..=buckets[0].max(buckets[1]).max(buckets[2]) {
                 assert!(buckets.iter().filter(|&b| b % divisor == 0).count() <= 1, "{buckets:?}");
             }

@@ -1,23 +1,22 @@
-//! Cells of a grid and those beside them.
+//! Cells of a grid and their adjacent cells.
 
 use rayon::prelude::*;
 
-/// Cells that a task takes.
+/// Cells per task.
 const CELLS_OF_TASK: usize = 256;
 
-/// The cells of a grid: how many there are along each axis, and which axes have their last cell beside the
-/// first.
+/// The cells of a grid: their number along each axis, and the periodic axes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CellBlock {
-    /// Number of cells along each axis; the first axis is the fastest.
+    /// Number of cells along each axis; the first index is the fastest.
     pub counts: [usize; 3],
-    /// Axes along which the grid repeats.
+    /// Periodic axes.
     pub wraps: [bool; 3],
 }
 
 impl CellBlock {
-    /// Joins the value of every cell with those of the cells beside it, across corners too. `window` is
-    /// memory that is kept.
+    /// Joins the value of every cell with those of its adjacent cells, those across edges and corners
+    /// included. `window` is a buffer that the caller keeps.
     pub fn join_beside<T: Copy + Send + Sync>(
         &self,
         values: &mut Vec<T>,

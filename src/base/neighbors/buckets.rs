@@ -1,26 +1,26 @@
-//! Sorting of particles into buckets, by counting.
+//! Counting sort of particles into buckets.
 
 use std::ops::Range;
 
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// Particles that a thread sorts alone.
+/// Number of particles up to which one thread sorts.
 const FEW: usize = 8192;
 
-/// Particles bucket by bucket; those of a bucket in the order of their rows. Memory is kept from one sorting
-/// to the next.
+/// Particles by bucket, and in the order of their rows within a bucket. Buffers are reused from one sort to
+/// the next.
 #[derive(Debug, Default)]
 pub struct Buckets {
     keys: Vec<u32>,
-    /// Particles of bucket b are `starts[b]..starts[b + 1]`; one entry more is scratch.
+    /// Particles of bucket b are `starts[b]..starts[b + 1]`; one additional entry is scratch.
     starts: Vec<u32>,
     /// Rows of the particles.
     pub rows: Vec<u32>,
 }
 
 impl Buckets {
-    /// Sorts the particles at `positions` into `buckets` by `key`, which is below that number.
+    /// Sorts the particles at `positions` into `buckets` by `key`, which is below `buckets`.
     pub fn sort(&mut self, positions: &[DVec3], buckets: usize, key: impl Fn(DVec3) -> u32 + Sync) {
         let Self { keys, starts, rows } = self;
         let count = positions.len();
@@ -30,7 +30,7 @@ impl Buckets {
         starts.resize(buckets + 2, 0);
         rows.resize(count, 0);
         let tasks = if count < FEW { 1 } else { rayon::current_num_threads() };
-        // starts[b + 1] serves as the place to write bucket b to, and ends as the start of b + 1.
+        // starts[b + 1] is the write position of bucket b, and ends as the start of b + 1.
         count_keys(keys, 0, &mut starts[2..], tasks);
         for b in 2..starts.len() {
             starts[b] += starts[b - 1];
@@ -43,20 +43,20 @@ impl Buckets {
         self.starts.len().saturating_sub(2)
     }
 
-    /// Particles of a bucket, as places in [`Buckets::rows`].
+    /// Particles of a bucket, as a range of [`Buckets::rows`].
     #[inline(always)]
     pub fn range(&self, bucket: usize) -> Range<usize> {
         self.starts[bucket] as usize..self.starts[bucket + 1] as usize
     }
 
-    /// Where each bucket starts, and the end of the last.
+    /// Start of each bucket, and the end of the last.
     #[inline(always)]
     pub fn starts(&self) -> &[u32] {
         &self.starts
     }
 }
 
-/// Counts the keys from `first` on; every task goes through all of them and looks at a part of the buckets.
+/// Counts the keys from `first` on; every task reads all of them and counts those of its range of buckets.
 fn count_keys(keys: &[u32], first: u32, counts: &mut [u32], tasks: usize) {
     if tasks > 1 && counts.len() > 1 {
         let half = counts.len() / 2;
@@ -75,8 +75,8 @@ fn count_keys(keys: &[u32], first: u32, counts: &mut [u32], tasks: usize) {
     }
 }
 
-/// Writes rows to the places of their keys, those from `first` on; tasks have as many rows each, as far as
-/// buckets allow.
+/// Writes rows to the positions of their keys, from the key `first` on; tasks have equal numbers of rows, as
+/// far as the buckets allow.
 fn place(keys: &[u32], first: u32, places: &mut [u32], rows: &mut [u32], tasks: usize) {
     let Some(&start) = places.first() else { return };
     if tasks > 1 && places.len() > 1 {

@@ -1,20 +1,20 @@
-//! Positions sorted into cells, for what wants particles that are near each other together.
+//! Positions sorted into cells, for algorithms that process nearby particles together.
 
 use glam::DVec3;
 
 use super::{Buckets, Periodic, PointBounds, bounds};
 
-/// Cells of equal length along each axis, x running fastest.
+/// Cells of equal length along each axis, with x as the fastest index.
 pub struct Cells {
     /// Number of cells along each axis.
     pub counts: [usize; 3],
-    /// Least length of a cell, m.
+    /// Minimum length of a cell, m.
     pub length: f64,
 }
 
-/// Sorts positions into cells of at least that length, m, or of twice, four times that, so that there are not
-/// more cells than particles: drops that fly far apart have larger ones. A cell has its middle at the origin,
-/// whatever its length; whole numbers of cells fill periodic axes.
+/// Sorts positions into cells of at least the given length, m. The length is doubled until there are no more
+/// cells than particles, as for drops far apart. One cell is centred at the origin for every length, and an
+/// integer number of cells fills a periodic axis.
 pub fn sort_into_cells(
     cells: &mut Buckets,
     positions: &[DVec3],

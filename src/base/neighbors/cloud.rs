@@ -1,4 +1,4 @@
-//! A set of particles as the search sees it.
+//! A set of particles as the input of the search.
 
 use super::NeighborError;
 use glam::DVec3;
@@ -7,10 +7,10 @@ use rayon::prelude::*;
 /// Support radii of a set of particles.
 #[derive(Debug, Clone, Copy)]
 pub enum SupportRadii<'a> {
-    /// One support radius (m) for all: the faster case.
+    /// One support radius (m) for all particles, the faster case.
     Uniform(f64),
-    /// One support radius (m) a particle. Cells are as large as the largest: the cost grows with the cube of
-    /// the ratio of largest to usual support.
+    /// One support radius (m) per particle. Cells are as large as the largest, so the cost grows with the
+    /// cube of the ratio of largest to usual support.
     PerParticle(&'a [f64]),
 }
 
@@ -24,12 +24,12 @@ pub struct Cloud<'a> {
 }
 
 impl<'a> Cloud<'a> {
-    /// Particles that share one support radius (m).
+    /// Particles with one common support radius (m).
     pub const fn uniform(positions: &'a [DVec3], support_radius: f64) -> Self {
         Self { positions, support: SupportRadii::Uniform(support_radius) }
     }
 
-    /// Particles with a support radius (m) each.
+    /// Particles with individual support radii (m).
     pub const fn per_particle(positions: &'a [DVec3], support_radii: &'a [f64]) -> Self {
         Self { positions, support: SupportRadii::PerParticle(support_radii) }
     }
@@ -61,7 +61,7 @@ impl<'a> Cloud<'a> {
         }
     }
 
-    /// Smallest box around the positions; an inverted box for an empty set.
+    /// Bounding box of the positions; an inverted box for an empty set.
     pub(super) fn bounds(&self) -> PointBounds {
         bounds(self.positions)
     }
@@ -86,23 +86,23 @@ impl<'a> Cloud<'a> {
     }
 }
 
-/// A box around positions.
+/// A bounding box.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PointBounds {
-    /// Least coordinates, m.
+    /// Minimum coordinates, m.
     pub low: DVec3,
-    /// Largest coordinates, m.
+    /// Maximum coordinates, m.
     pub high: DVec3,
 }
 
 impl PointBounds {
-    /// Its middle, m.
+    /// Its centre, m.
     pub fn middle(&self) -> DVec3 {
         0.5 * (self.low + self.high)
     }
 }
 
-/// Smallest box around positions, m; an inverted box where there are none.
+/// Bounding box of positions, m; an inverted box where there are none.
 pub fn bounds(positions: &[DVec3]) -> PointBounds {
     let empty = || (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let (low, high) = positions

@@ -1,8 +1,8 @@
-//! What can be wrong with the input of a neighbour search.
+//! Errors in the input of a neighbour search.
 
 use glam::DVec3;
 
-/// Why a neighbour list cannot be built.
+/// Error of building a neighbour list.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum NeighborError {
     /// A position is NaN or infinite.
@@ -20,12 +20,12 @@ pub enum NeighborError {
     SupportRadius {
         /// "target" or "source".
         set: &'static str,
-        /// Row of the particle in its set; 0 where all share one.
+        /// Row of the particle in its set; 0 where all particles have one radius.
         index: usize,
         /// The support radius (m).
         value: f64,
     },
-    /// Not one support radius for each particle.
+    /// The number of support radii differs from the number of particles.
     #[error("{supports} support radii for {positions} {set} particles; one for each is needed")]
     Length {
         /// "target" or "source".
@@ -38,7 +38,7 @@ pub enum NeighborError {
     /// The skin is negative or not finite.
     #[error("the skin must be finite and not negative, found {0} m")]
     Skin(f64),
-    /// A particle would see two images of another.
+    /// A particle would have two periodic images of another within its support.
     #[error(
         "periodic domain is {length} m long in {axis}; it must be at least twice the largest support radius plus \
          skin, {needed} m"
@@ -48,10 +48,10 @@ pub enum NeighborError {
         axis: char,
         /// Length of the domain (m).
         length: f64,
-        /// Least length (m).
+        /// Minimum length (m).
         needed: f64,
     },
-    /// The bounds of a periodic axis do not make an interval.
+    /// The bounds of a periodic axis are not an interval of positive length.
     #[error(
         "periodic domain reaches from {min} m to {max} m in {axis}; the end must be above the start, both finite"
     )]
@@ -63,7 +63,7 @@ pub enum NeighborError {
         /// End (m).
         max: f64,
     },
-    /// Rows are numbered in 32 bits.
+    /// The number of particles exceeds 32-bit row indices.
     #[error("{0} particles in one neighbour search; at most 4294967294 are possible")]
     TooMany(usize),
 }

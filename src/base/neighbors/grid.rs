@@ -1,9 +1,9 @@
-//! Uniform grid of cells, particles sorted into them by counting.
+//! Uniform grid of cells, into which particles are sorted by counting.
 //!
-//! A cell is half as long as the largest pair radius. Cells map to buckets, at most about four times as many
-//! as particles: one to one where the grid is small enough, and folded onto themselves like a torus where a
-//! few particles span a huge box. Folding brings candidates that the distance test rejects, never loses one,
-//! and leaves the order of neighbours as it is.
+//! A cell is half as long as the largest pair radius. Cells map to buckets, of which there are at most about
+//! four per particle. The map is one to one where the grid is small enough; where a few particles span a huge
+//! box, the cells are folded onto a torus. Folding adds candidates that the distance test rejects, never
+//! loses one, and preserves the order of neighbours.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -12,54 +12,54 @@ use super::axis::{AxisPeriod, AxisRange, CellAxis, fold_into_buckets};
 use super::buckets::Buckets;
 use super::{Cloud, Periodic, PointBounds};
 
-/// Room behind the last particle, so that four can be read from each.
+/// Padding behind the last particle, so that four can be read from each.
 const PADDING: usize = 3;
 
-/// Source particles in cell order; buffers are kept from one build to the next.
+/// Source particles in cell order; buffers are reused from one build to the next.
 #[derive(Debug, Default)]
 pub(super) struct Grid {
     axes: [CellAxis; 3],
-    /// Cells are buckets, side by side along each axis.
+    /// Whether each cell is a bucket of its own along each axis.
     plain: bool,
     buckets: Buckets,
     coordinates: [Vec<f64>; 3],
-    /// Support radii; empty where not asked for.
+    /// Support radii; empty where all are equal.
     pub supports: Vec<f64>,
-    /// Cells of all sources by z, y, x, in the order of rows; empty where no bucket holds several cells.
+    /// Cell indices z, y, x of all sources, in the order of rows; empty where no bucket holds several cells.
     cells: Vec<[i64; 3]>,
 }
 
-/// Sorted particles one after another.
+/// A contiguous range of the sorted particles.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CellRun {
     pub first: u32,
     pub end: u32,
-    /// Whether the place around which was looked may be among them.
+    /// Whether the particle at the centre of the search may be in the range.
     pub holds_own: bool,
 }
 
-/// Ranges of the sorted particles, and what it takes to find them.
+/// Ranges of the sorted particles, and the scratch memory of the search for them.
 #[derive(Debug, Default)]
 pub(super) struct Ranges {
     pub found: Vec<CellRun>,
-    /// Number of particles, those that fill up fours included.
+    /// Number of particles, the padding to multiples of four included.
     pub room: usize,
     lists: [Vec<i64>; 3],
 }
 
-/// Where a grid is, and how far neighbours are.
+/// Bounds and radius of a grid.
 #[derive(Clone, Copy)]
 pub(super) struct GridBounds<'a> {
-    /// The box around what is searched, m.
+    /// Bounding box of the searched particles, m.
     pub bounds: PointBounds,
-    /// Largest distance of neighbours, m.
+    /// Maximum distance of neighbours, m.
     pub radius: f64,
     pub periodic: &'a Periodic,
 }
 
 impl Grid {
-    /// Sorts `sources` into cells of half of `radius`. `bounds` holds targets too on periodic axes; cells are
-    /// in proportion to `particles`.
+    /// Sorts `sources` into cells of half of `radius`. `bounds` includes the targets on periodic axes; the
+    /// number of buckets is proportional to `particles`.
     pub fn build(
         &mut self,
         sources: Cloud<'_>,
@@ -74,7 +74,7 @@ impl Grid {
         };
         let range = |a: usize| AxisRange { min: low[a], max: high[a] };
         let round_off = |a: usize| CellAxis::round_off(range(a), radius, period(a));
-        // Cells are the same along all axes that are not periodic.
+        // Cells have the same length along all axes that are not periodic.
         let round_off = round_off(0).max(round_off(1)).max(round_off(2));
         self.axes = [0, 1, 2].map(|a| CellAxis::new(range(a), radius, period(a), round_off));
         fold_into_buckets(&mut self.axes, particles);
@@ -107,7 +107,7 @@ impl Grid {
         rows.resize(count + PADDING, 0);
     }
 
-    /// Rows of the sorted particles; this, coordinates and supports are longer by [`PADDING`].
+    /// Rows of the sorted particles; they, the coordinates and the support radii are longer by [`PADDING`].
     #[inline(always)]
     pub fn rows(&self) -> &[u32] {
         &self.buckets.rows
@@ -120,8 +120,8 @@ impl Grid {
         [x, y, z]
     }
 
-    /// Puts sources that were found into the order of cells and, in a cell, of rows, which they have already
-    /// unless buckets hold several cells.
+    /// Sorts the sources found by cell and then by row. They are in this order already unless buckets hold
+    /// several cells.
     #[inline(never)]
     pub fn order(&self, found: &mut [u32]) {
         if !self.cells.is_empty() {
@@ -129,7 +129,7 @@ impl Grid {
         }
     }
 
-    /// Finds ranges that hold all sources within the radius, m, of `position`, each once.
+    /// Finds ranges that contain all sources within the radius, m, of `position`, without duplicates.
     #[inline(always)]
     pub fn around(&self, position: DVec3, radius: f64, ranges: &mut Ranges) {
         ranges.clear();
@@ -158,7 +158,7 @@ impl Grid {
         }
     }
 
-    /// The same where cells meet at the ends of a period or share buckets.
+    /// The same search where cells adjoin across a period or share buckets.
     fn around_folded(&self, position: DVec3, radius: f64, ranges: &mut Ranges) {
         let [x, y, _] = &self.axes;
         let mut lists = std::mem::take(&mut ranges.lists);
@@ -170,7 +170,7 @@ impl Grid {
         for plane in planes {
             for line in lines {
                 let line = ((plane * y.buckets + line) * x.buckets) as usize;
-                // Buckets side by side along x are one range.
+                // Adjacent buckets along x form one range.
                 for run in columns.chunk_by(|a, b| a + 1 == *b) {
                     let (first, last) = (line + run[0] as usize, line + run[run.len() - 1] as usize);
                     ranges.add(starts[first], starts[last + 1], true);
@@ -197,12 +197,12 @@ impl Ranges {
     }
 }
 
-/// The square of the distance of a place from a cell, in cells.
+/// Squared distance of a point from a cell, in cells.
 #[inline(always)]
 fn square_of_gap(cell: u32, place: f64) -> f64 {
     let low = f64::from(cell);
     let (below, above) = (low - place, place - (low + 1.0));
-    // Not `max`, which takes care of what is no number.
+    // `max` is avoided, because it treats NaN separately.
     let gap = if below > above { below } else { above };
     let gap = if gap > 0.0 { gap } else { 0.0 };
     gap * gap
