@@ -1,4 +1,4 @@
-//! Numbers as engineers write them: `13 ms`, `4.80 kJ`, `21 670 steps`.
+//! Engineering notation of numbers: `13 ms`, `4.80 kJ`, `21 670 steps`.
 
 /// SI prefixes and their powers of ten.
 const PREFIXES: [(i32, &str); 9] =
@@ -46,7 +46,7 @@ pub fn quantity_to(value: f64, unit: &str, digits: usize) -> String {
     }
     let precision = digits.saturating_sub(1);
     let scientific = format!("{value:.precision$e}");
-    // The exponent of the rounded value: 999.96 to four digits is 1000.
+    // The exponent is that of the rounded value: 999.96 to four digits is 1000.
     let exponent: i32 = scientific.split_once('e').and_then(|(_, text)| text.parse().ok()).unwrap_or(0);
     let power = 3 * exponent.div_euclid(3);
     let prefix = PREFIXES.iter().find(|(known, _)| *known == power && PREFIXED.contains(&unit));
@@ -63,15 +63,15 @@ pub fn quantity_to(value: f64, unit: &str, digits: usize) -> String {
     }
 }
 
-/// A place with at most six digits each, `(0.1, 0.03)`: without its third coordinate where that is zero, as
-/// in the plane.
+/// A point with at most six digits per coordinate, `(0.1, 0.03)`; z is omitted where it is zero, as in two
+/// dimensions.
 pub fn place(coordinates: impl Into<[f64; 3]>) -> String {
     let [x, y, z] = coordinates.into();
     let shown = if z == 0.0 { vec![x, y] } else { vec![x, y, z] };
     format!("({})", shown.into_iter().map(number).collect::<Vec<_>>().join(", "))
 }
 
-/// A whole number and what it counts, given in the singular: `1 step`, `21 670 steps`.
+/// An integer with the counted noun, which is given in the singular: `1 step`, `21 670 steps`.
 pub fn count(number: u64, noun: &str) -> String {
     let plural = match noun {
         _ if number == 1 => noun.to_owned(),
@@ -81,7 +81,7 @@ pub fn count(number: u64, noun: &str) -> String {
     format!("{} {plural}", digits(number))
 }
 
-/// A whole number in groups of three digits: `21 670`; four digits stand together.
+/// An integer in groups of three digits: `21 670`; four digits are not separated.
 pub fn digits(number: u64) -> String {
     let digits = number.to_string();
     let mut grouped = String::new();
@@ -94,7 +94,7 @@ pub fn digits(number: u64) -> String {
     grouped
 }
 
-/// Digits without the zeros at the end of their fraction.
+/// Digits without trailing zeros of the fraction.
 fn trimmed(digits: &str) -> &str {
     if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { digits }
 }

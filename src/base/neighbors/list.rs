@@ -1,4 +1,4 @@
-//! The list itself, rows in one array.
+//! Neighbour list in compressed row storage.
 
 use super::{Cloud, NeighborError, NeighborSearch, Periodic};
 use std::ops::Range;
@@ -18,7 +18,7 @@ impl Default for NeighborList {
 }
 
 impl NeighborList {
-    /// List of a set of particles with itself, for good: no skin, no spare memory.
+    /// Permanent list of a set of particles with itself, without skin and without spare memory.
     ///
     /// # Errors
     /// See [`NeighborError`].
@@ -30,7 +30,7 @@ impl NeighborList {
         Ok(list)
     }
 
-    /// Leaves out the pairs (i, j) that `keep` refuses.
+    /// Removes the pairs (i, j) for which `keep` is false.
     pub fn retain(&mut self, keep: impl Fn(usize, u32) -> bool) {
         let mut kept = 0;
         for i in 0..self.rows() {
@@ -50,9 +50,9 @@ impl NeighborList {
         self.indices.truncate(kept);
     }
 
-    /// Becomes the list of sets of rows of `other`, the first of which has the number `first`: what any of a
-    /// set has for a neighbour, ascending; nothing for sets whose number is not wanted. `last` is memory that
-    /// is kept.
+    /// Becomes the list of sets of rows of `other`, whose first row has the number `first`. The row of a set
+    /// is the union of the rows of its members, ascending; it is empty for a set that is not wanted. `last`
+    /// is a buffer that the caller keeps.
     pub fn join<const N: usize>(
         &mut self,
         sets: &[[u32; N]],
@@ -64,8 +64,8 @@ impl NeighborList {
         self.offsets.clear();
         self.offsets.push(0);
         self.indices.clear();
-        // For every neighbour the number, from one on, of the last set that has it: most are in several lists
-        // of a set.
+        // The number, from one, of the last set that contains each neighbour: most neighbours are in several
+        // rows of a set.
         last.clear();
         last.resize(other.indices.iter().max().map_or(0, |&most| most as usize + 1), 0);
         for (set, number) in sets.iter().zip(1_u32..) {
@@ -82,18 +82,18 @@ impl NeighborList {
         }
     }
 
-    /// Counts neighbours from `by` on, as rows of a larger set of particles.
+    /// Adds the offset `by` to the neighbours, for rows of a larger set of particles.
     pub fn shift(&mut self, by: u32) {
         self.indices.iter_mut().for_each(|j| *j += by);
     }
 
-    /// Gives every neighbour another number.
+    /// Renumbers the neighbours.
     pub fn renumber(&mut self, number: impl Fn(u32) -> u32) {
         self.indices.iter_mut().for_each(|j| *j = number(*j));
     }
 
-    /// The same pairs from the other side: row k of `other` has the rows of this list, ascending, that hold
-    /// the k-th of `rows`.
+    /// Transposes the list: row k of `other` contains the rows of this list, ascending, that contain the k-th
+    /// of `rows`.
     pub fn turn(&self, rows: Range<usize>, other: &mut Self) {
         let Self { offsets, indices } = other;
         offsets.clear();
@@ -105,7 +105,7 @@ impl NeighborList {
             offsets[k] += offsets[k - 1];
         }
         indices.resize(self.indices.len(), 0);
-        // The start of each row moves to its end, where the next one starts.
+        // The start of each row advances to its end, the start of the next row.
         for i in 0..self.rows() {
             for &j in self.row(i) {
                 let at = &mut offsets[j as usize - rows.start + 1];
@@ -132,18 +132,18 @@ impl NeighborList {
         &self.indices[self.range(i)]
     }
 
-    /// Where row `i` lies in [`NeighborList::indices`] and in arrays of pair data.
+    /// Range of row `i` in [`NeighborList::indices`] and in arrays of pair data.
     #[inline]
     pub fn range(&self, i: usize) -> Range<usize> {
         self.offsets[i]..self.offsets[i + 1]
     }
 
-    /// Row starts, one more than there are rows.
+    /// Row starts, and the end of the last row.
     pub fn offsets(&self) -> &[usize] {
         &self.offsets
     }
 
-    /// All rows one after another.
+    /// The concatenated rows.
     pub fn indices(&self) -> &[u32] {
         &self.indices
     }
@@ -153,22 +153,22 @@ impl NeighborList {
         self.offsets.windows(2).map(|w| w[1] - w[0])
     }
 
-    /// Mean number of neighbours, zero without particles.
+    /// Mean number of neighbours; zero without particles.
     pub fn mean_count(&self) -> f64 {
         self.pairs() as f64 / self.rows().max(1) as f64
     }
 
-    /// Least number of neighbours, zero without particles.
+    /// Minimum number of neighbours; zero without particles.
     pub fn min_count(&self) -> usize {
         self.counts().min().unwrap_or(0)
     }
 
-    /// Largest number of neighbours, zero without particles.
+    /// Maximum number of neighbours; zero without particles.
     pub fn max_count(&self) -> usize {
         self.counts().max().unwrap_or(0)
     }
 
-    /// Memory held (B).
+    /// Allocated memory (B).
     pub fn memory_bytes(&self) -> usize {
         self.offsets.capacity() * size_of::<usize>() + self.indices.capacity() * size_of::<u32>()
     }

@@ -2,12 +2,12 @@
 //!
 //! Particle j is in row i when `|x_ij| < (H_i + H_j) / 2 + skin`, with `x_ij = x_j - x_i` to the nearest
 //! periodic image and H the support radius. Lists are full (a pair is in both rows), rows are in ascending
-//! order and a particle is never its own neighbour. A list depends on positions, supports and skin alone: not
-//! on the number of threads, nor on what the buffers held before.
+//! order and a particle is never its own neighbour. A list depends on positions, supports and skin alone, not
+//! on the number of threads or the previous content of its buffers.
 //!
-//! Two uses: [`NeighborList::reference`], built once (total Lagrangian), and [`VerletList`], rebuilt when
-//! something has moved more than half the skin, within one set of particles or from one set to another (fluid
-//! and solid).
+//! There are two uses. [`NeighborList::reference`] is built once (total Lagrangian). [`VerletList`], within
+//! one set of particles or between two (fluid and solid), is rebuilt when a particle has moved more than half
+//! the skin.
 
 mod axis;
 mod beside;

@@ -1,42 +1,42 @@
-//! How far particles near each other have moved against each other since a list of neighbours was built.
+//! Bound of the relative displacement of nearby particles since a neighbour list was built.
 //!
-//! A list with a skin misses no pair as long as no two particles that were apart have come closer by more
-//! than the skin. That is a matter of how particles near each other move against each other, not of how far
-//! they go: what flies as a whole carries its list along. Space is cut into cells; the displacements of the
-//! particles of a cell lie in a box, and the box around those of a cell and the cells beside it bounds how
-//! much particles in them have moved against each other. Particles of cells that do not touch were the length
-//! of a cell apart.
+//! A list with a skin is complete as long as no two particles have approached each other by more than the
+//! skin. The criterion is the relative displacement of nearby particles, not their displacement: the list of
+//! a body in free flight stays valid. Space is divided into cells. The displacements of the particles of a
+//! cell have a bounding box, and the bounding box over a cell and its adjacent cells bounds the relative
+//! displacement of the particles in them. Particles of cells that do not touch were at least the length of a
+//! cell apart.
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::{Buckets, CellBlock, Periodic, sort_into_cells};
 
-/// Cells that a task takes.
+/// Cells per task.
 const CELLS_OF_TASK: usize = 64;
 
-/// The cells, and where their particles were.
+/// The cells, and the reference positions of their particles.
 #[derive(Debug, Default)]
 pub struct Parting {
     grid: CellBlock,
     length: f64,
     cells: Buckets,
-    /// In the order of cells, m.
+    /// Reference positions in the order of cells, m.
     then: Vec<DVec3>,
     boxes: Vec<DisplacementBox>,
     window: Vec<DisplacementBox>,
 }
 
-/// Relative displacement of particles, m.
+/// Bounds of the relative displacement of particles, m.
 #[derive(Clone, Copy, Debug)]
 pub struct Parted {
-    /// Those that were nearer than the length of a cell, at most.
+    /// Maximum for particles that were nearer than the length of a cell.
     pub near: f64,
-    /// Any two, at most.
+    /// Maximum for any two particles.
     pub all: f64,
 }
 
-/// The box around displacements, m; inverted where there are none, without end where one is no number.
+/// Bounding box of displacements, m; inverted without displacements, infinite if one is NaN or infinite.
 #[derive(Clone, Copy, Debug)]
 struct DisplacementBox {
     low: DVec3,
@@ -58,14 +58,14 @@ impl DisplacementBox {
         }
     }
 
-    /// Most that two of them differ, m.
+    /// Maximum difference of two displacements, m.
     fn diagonal(self) -> f64 {
         (self.high - self.low).max(DVec3::ZERO).length()
     }
 }
 
 impl Parting {
-    /// Notes where particles are, in cells of at least that length, m.
+    /// Stores the positions of the particles as the reference, in cells of at least the given length, m.
     pub fn note(&mut self, positions: &[DVec3], length: f64) {
         let sorted = sort_into_cells(&mut self.cells, positions, length, &Periodic::NONE);
         self.grid = CellBlock { counts: sorted.counts, wraps: [false; 3] };
@@ -74,12 +74,13 @@ impl Parting {
         self.then.extend(self.cells.rows.iter().map(|&row| positions[row as usize]));
     }
 
-    /// Least length of a cell, m.
+    /// Length of the cells, m.
     pub fn length(&self) -> f64 {
         self.length
     }
 
-    /// Bound of the relative displacement of the particles since they were noted; infinite where none were.
+    /// Bound of the relative displacement of the particles since the last [`Parting::note`]; infinite where
+    /// the number of particles has changed.
     pub fn parted(&mut self, positions: &[DVec3]) -> Parted {
         if self.then.len() != positions.len() {
             return Parted { near: f64::INFINITY, all: f64::INFINITY };

@@ -5,12 +5,12 @@ use glam::DVec3;
 
 pub(super) const AXIS_NAMES: [char; 3] = ['x', 'y', 'z'];
 
-/// Which axes are periodic and how long they are. Positions need not lie inside.
+/// The periodic axes and their lengths. Positions need not lie inside the domain.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Periodic {
     min: DVec3,
     axes: [bool; 3],
-    /// Zero on axes that are not periodic: with it, the minimal image needs no branch.
+    /// Zero on axes that are not periodic, so that the minimum image needs no branch.
     length: DVec3,
     inverse_length: DVec3,
 }
@@ -20,8 +20,8 @@ impl Periodic {
     pub const NONE: Self =
         Self { min: DVec3::ZERO, axes: [false; 3], length: DVec3::ZERO, inverse_length: DVec3::ZERO };
 
-    /// A box from `min` to `max` (m), periodic along the `axes` that are true; bounds of other axes are not
-    /// used.
+    /// A box from `min` to `max` (m), periodic along the `axes` that are true; bounds of other axes are
+    /// ignored.
     ///
     /// # Errors
     /// [`NeighborError::PeriodicBounds`] where a periodic axis has no positive finite length.
@@ -54,7 +54,7 @@ impl Periodic {
         self.length
     }
 
-    /// One over the length (1/m) of the periodic axes, zero on the others.
+    /// Inverse length (1/m) of the periodic axes, zero on the others.
     pub(super) const fn inverse_lengths(&self) -> DVec3 {
         self.inverse_length
     }
@@ -70,11 +70,11 @@ impl Periodic {
         x_ij - self.length * (x_ij * self.inverse_length).map(nearest_integer)
     }
 
-    /// The image of a position inside the box, `min <= x < max` on periodic axes.
+    /// The periodic image of a position inside the box, `min <= x < max` on periodic axes.
     pub fn wrap(&self, position: DVec3) -> DVec3 {
         let mut wrapped = position - self.length * ((position - self.min) * self.inverse_length).floor();
         for a in (0..3).filter(|&a| self.axes[a]) {
-            // Rounding may land on the end of the box, which is its start.
+            // Rounding may give the end of the box, which is equivalent to its start.
             if wrapped[a] >= self.min[a] + self.length[a] || wrapped[a] < self.min[a] {
                 wrapped[a] = self.min[a];
             }
@@ -83,8 +83,8 @@ impl Periodic {
     }
 }
 
-/// Between 2^52 and 2^53 the spacing of doubles is one: adding and taking away rounds to the nearest integer
-/// without a call.
+/// The spacing of doubles is one between 2^52 and 2^53, so adding and subtracting this constant rounds to the
+/// nearest integer without a library call.
 pub const SHIFT: f64 = 6755399441055744.0;
 
 #[inline(always)]

@@ -1,8 +1,8 @@
-//! Rows of a list from a grid, in parallel.
+//! Rows of a neighbour list from a grid, in parallel.
 //!
-//! Rows are found in waves that bound the memory beside the list, block by block, and copied to their places.
-//! Particles that are neighbours in the order of rows share candidates: set-up and sorting see to it that
-//! they mostly are near each other.
+//! Rows are found block by block and copied into the list. Blocks are processed in waves, which bound the
+//! memory needed beside the list. Particles with consecutive rows share candidates in the cache: set-up and
+//! sorting place most of them near each other.
 
 use super::grid::{Grid, Ranges};
 use super::periodic::SHIFT;
@@ -12,22 +12,23 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Rows found one after another by one thread.
+/// Rows per block, found in sequence by one thread.
 const BLOCK: usize = 128;
-/// Blocks in a wave.
+/// Blocks per wave.
 const WAVE: usize = 1024;
 
-/// Memory of one wave, kept from one build to the next.
+/// Buffers of one wave, reused from one build to the next.
 #[derive(Debug, Default)]
 pub(super) struct Buffers {
     blocks: Vec<RowBlock>,
 }
 
-/// Rows of one block, one after another.
+/// The concatenated rows of one block.
 #[derive(Debug, Default)]
 struct RowBlock {
     ends: Vec<usize>,
-    /// Longer than what is used: four candidates are written at once, and those kept that are near.
+    /// Longer than its used part: four candidates are written at once, and only those within the radius are
+    /// kept.
     found: Vec<u32>,
     /// Candidates of a row.
     ranges: Ranges,
@@ -38,17 +39,17 @@ pub(super) struct Query<'a> {
     pub grid: &'a Grid,
     pub targets: Cloud<'a>,
     pub same_set: bool,
-    /// Largest pair radius (m), skin included.
+    /// Maximum pair radius (m), skin included.
     pub radius: f64,
     pub skin: f64,
     pub periodic: &'a Periodic,
-    /// Whether particles differ along z.
+    /// Whether the z coordinates of particles differ.
     pub solid: bool,
     pub order: Order<'a>,
-    /// Half the edges of the boxes around the targets, m, where targets are boxes: a source within the radius
-    /// of the box is a neighbour.
+    /// Half the edge lengths of the targets, m, where targets are boxes: a source within the radius of the
+    /// box is a neighbour.
     pub halves: Option<&'a [DVec3]>,
-    /// The targets whose neighbours are wanted, ascending; none where those of all are.
+    /// The targets whose rows are built, ascending; `None` for all.
     pub only: Option<&'a [Range<usize>]>,
 }
 
@@ -57,9 +58,9 @@ pub(super) struct Query<'a> {
 pub(super) enum Order<'a> {
     /// Ascending.
     Rows,
-    /// By groups of sources, that end here, and within a group by cells.
+    /// By groups of sources, which end at these indices, and within a group by cells.
     Groups(&'a [u32]),
-    /// By cells: there is one group.
+    /// By cells, in one group.
     Cells,
 }
 
@@ -69,7 +70,7 @@ impl Query<'_> {
         self.only.is_none_or(|only| only.iter().any(|rows| rows.contains(&i)))
     }
 
-    /// Replaces what the list holds.
+    /// Replaces the content of the list.
     pub fn fill(&self, buffers: &mut Buffers, list: &mut NeighborList) {
         let uniform =
             matches!(self.targets.support, SupportRadii::Uniform(_)) && self.grid.supports.is_empty();
@@ -112,8 +113,8 @@ impl Query<'_> {
             }
             if list.indices.len() < total {
                 if list.indices.capacity() < total {
-                    // A list that has outgrown its room once gets more to spare: growing on, it then seldom
-                    // asks for memory.
+                    // A list that has outgrown its capacity gets a reserve, so that further growth seldom
+                    // allocates.
                     let spare = if list.indices.capacity() == 0 { 1.02 } else { 1.25 };
                     let expected = (total as f64 / last as f64 * rows as f64 * spare) as usize;
                     list.indices.reserve_exact(expected.max(total) - list.indices.len());
@@ -133,7 +134,7 @@ impl Query<'_> {
     }
 }
 
-/// The rows of a block, whose particles differ along the first D axes.
+/// The rows of a block in D dimensions.
 struct BlockRows<'a, const D: usize, const PERIODIC: bool, const UNIFORM: bool, const BOXES: bool> {
     query: &'a Query<'a>,
     rows: Range<usize>,
@@ -198,10 +199,10 @@ impl<const D: usize, const PERIODIC: bool, const UNIFORM: bool, const BOXES: boo
     }
 }
 
-/// The lanes that hold one of that many candidates.
+/// Mask of the lanes in use, by the number of candidates.
 const MASKS: [usize; 5] = [0, 1, 3, 7, 15];
 
-/// Takes one value out of those from `first` on; their new end.
+/// Removes one value from those from `first` on and returns their new end.
 #[inline(always)]
 fn without(values: &mut [u32], first: usize, value: u32) -> usize {
     let mut kept = first;
@@ -212,14 +213,14 @@ fn without(values: &mut [u32], first: usize, value: u32) -> usize {
     kept
 }
 
-/// Decides who is near, from distances along the first D axes.
+/// The distance test in D dimensions.
 struct Test<'a, const D: usize, const PERIODIC: bool, const UNIFORM: bool, const BOXES: bool> {
     coordinates: [&'a [f64]; 3],
     supports: &'a [f64],
     length: DVec3,
     inverse: DVec3,
     skin: f64,
-    /// Square of the largest pair radius.
+    /// Square of the maximum pair radius.
     square: f64,
 }
 
@@ -240,7 +241,7 @@ impl<'a, const D: usize, const PERIODIC: bool, const UNIFORM: bool, const BOXES:
         }
     }
 
-    /// Coordinates and support radii of that many fours of sorted particles from `first` on, and their rows.
+    /// Coordinates, support radii and rows of sorted particles from `first` on, in `fours` groups of four.
     #[inline(always)]
     fn candidates(
         &self,
@@ -256,7 +257,7 @@ impl<'a, const D: usize, const PERIODIC: bool, const UNIFORM: bool, const BOXES:
         (CandidateFours { coordinates, supports }, fours_of(sorted, first, fours))
     }
 
-    /// Which of the k-th four candidates are near a place: a bit for each.
+    /// Bit mask of those of the k-th four candidates that are neighbours of a target.
     #[inline(always)]
     fn near<A: FourLanes>(
         &self,
@@ -291,27 +292,27 @@ impl<'a, const D: usize, const PERIODIC: bool, const UNIFORM: bool, const BOXES:
     }
 }
 
-/// Where neighbours are looked for: a box, which is a point where `half` is zero.
+/// The target of a search: a box, or a point where `half` is zero.
 struct SearchBox {
     center: DVec3,
     half: DVec3,
-    /// Support radius; zero where all have the same.
+    /// Support radius; zero where it is uniform.
     support: f64,
 }
 
-/// Fours of sorted particles.
+/// Sorted particles in groups of four.
 struct CandidateFours<'a, const D: usize> {
     coordinates: [&'a [[f64; 4]]; D],
     supports: &'a [[f64; 4]],
 }
 
-/// That many fours from `first` on.
+/// A column from `first` on, in `fours` groups of four.
 #[inline(always)]
 fn fours_of<T>(column: &[T], first: usize, fours: usize) -> &[[T; 4]] {
     column[first..first + 4 * fours].as_chunks().0
 }
 
-/// Whether a row has members of several groups.
+/// Whether a row contains members of several groups.
 #[inline(always)]
 fn is_mixed(row: &[u32], groups: &[u32]) -> bool {
     let (mut low, mut high) = (u32::MAX, 0);

@@ -1,4 +1,4 @@
-//! The search: checks of the input, the grid, then the rows.
+//! The neighbour search: it checks the input, builds the grid, then the rows.
 
 use std::ops::Range;
 
@@ -9,7 +9,7 @@ use super::periodic::AXIS_NAMES;
 use super::rows::{Buffers, Order, Query};
 use super::{Cloud, NeighborError, NeighborList, Periodic, PointBounds, SupportRadii};
 
-/// Neighbour search with buffers that are kept: from the second build of like size on it does not allocate.
+/// Neighbour search with persistent buffers: it does not allocate from the second build of similar size on.
 #[derive(Debug, Default)]
 pub struct NeighborSearch {
     grid: Grid,
@@ -25,45 +25,45 @@ struct GridSources {
     bounds: PointBounds,
 }
 
-/// A cloud of whose first particles neighbours are looked for.
+/// A cloud, the first particles of which are targets.
 #[derive(Clone, Copy)]
 pub struct FirstOfCloud<'a> {
     /// All particles.
     pub cloud: Cloud<'a>,
-    /// How many of them are targets.
+    /// Number of targets.
     pub targets: usize,
 }
 
-/// Task of a search, beside the targets.
+/// Parameters of a search, beside the targets.
 #[derive(Clone, Copy)]
 struct SearchTask<'a> {
     same_set: bool,
     skin: f64,
-    /// Where the groups of sources end that order a row; none for ascending rows.
+    /// Ends of the groups of sources that order a row; `None` for ascending rows.
     groups: Option<&'a [u32]>,
     periodic: &'a Periodic,
-    /// Half the edges of the boxes around the targets, m, where targets are boxes.
+    /// Half the edge lengths of the targets, m, where targets are boxes.
     halves: Option<&'a [DVec3]>,
-    /// The targets whose neighbours are wanted, ascending; none where those of all are.
+    /// The targets whose rows are built, ascending; `None` for all.
     only: Option<&'a [Range<usize>]>,
 }
 
-/// Boxes around which is looked for neighbours.
+/// Boxes whose neighbours are searched.
 #[derive(Clone, Copy)]
 pub struct Boxes<'a> {
     /// Their centres, m.
     pub centers: &'a [DVec3],
-    /// Half of their edges, m.
+    /// Half of their edge lengths, m.
     pub halves: &'a [DVec3],
-    /// The boxes whose rows are wanted, ascending; the rows of the others stay empty.
+    /// The boxes whose rows are built, ascending; the rows of the others stay empty.
     pub wanted: &'a [Range<usize>],
-    /// Where the groups of sources end that order a row.
+    /// Ends of the groups of sources that order a row.
     pub groups: &'a [u32],
 }
 
 impl NeighborSearch {
     /// Lists the neighbours of every particle of `cloud` in `cloud`, itself excluded, within the mean of
-    /// their support radii plus `skin` (m). What `list` held is replaced.
+    /// their support radii plus `skin` (m). The content of `list` is replaced.
     ///
     /// # Errors
     /// See [`NeighborError`]; `list` is then unchanged.
@@ -78,9 +78,9 @@ impl NeighborSearch {
         self.build(cloud, cloud, wanted, list)
     }
 
-    /// Lists the neighbours of the first particles of a cloud in all of it. A row is ordered by the groups of
-    /// particles that end at `groups`, and within a group by cells: cheaper than ascending rows. Otherwise as
-    /// [`NeighborSearch::within`].
+    /// Lists the neighbours of the first particles of a cloud in the whole cloud. A row is ordered by the
+    /// groups of particles that end at `groups`, and within a group by cells, which is cheaper than ascending
+    /// rows. Otherwise as [`NeighborSearch::within`].
     ///
     /// # Errors
     /// See [`NeighborError`]; `list` is then unchanged.
@@ -97,8 +97,8 @@ impl NeighborSearch {
         self.build(first.cloud.first(first.targets), first.cloud, wanted, list)
     }
 
-    /// Lists the neighbours of every target among `sources`, another set of particles: equal row numbers are
-    /// not the same particle. Otherwise as [`NeighborSearch::within`].
+    /// Lists the neighbours of every target among `sources`, another set of particles, where equal row
+    /// numbers do not mean the same particle. Otherwise as [`NeighborSearch::within`].
     ///
     /// # Errors
     /// See [`NeighborError`]; `list` is then unchanged.
@@ -114,9 +114,9 @@ impl NeighborSearch {
         self.build(targets, sources, wanted, list)
     }
 
-    /// Lists the neighbours of other particles among the sources of the search before, without sorting these
-    /// again. Those have one support radius, and so do the others; rows are ordered as by
-    /// [`NeighborSearch::of_first`]. A skin much larger than that of the search before is slow.
+    /// Lists the neighbours of other particles among the sources of the previous search, without sorting
+    /// these again. Both sets have uniform support radii; rows are ordered as by
+    /// [`NeighborSearch::of_first`]. A skin much larger than that of the previous search is slow.
     ///
     /// # Errors
     /// See [`NeighborError`]; `list` is then unchanged.
@@ -137,7 +137,7 @@ impl NeighborSearch {
         Ok(())
     }
 
-    /// Sorts the sources of one support radius into the grid, for the searches after it.
+    /// Sorts sources with a uniform support radius into the grid, for subsequent searches.
     ///
     /// # Errors
     /// See [`NeighborError`].
@@ -146,8 +146,8 @@ impl NeighborSearch {
         self.grid_of(sources.first(0), sources, wanted).map(|_| ())
     }
 
-    /// Lists the sources of the search before that are within the support radius and the skin of each of some
-    /// boxes. Otherwise as [`NeighborSearch::of_others`].
+    /// Lists, for each box, the sources of the previous search within the support radius plus the skin.
+    /// Otherwise as [`NeighborSearch::of_others`].
     ///
     /// # Errors
     /// See [`NeighborError`].
@@ -164,7 +164,7 @@ impl NeighborSearch {
         done
     }
 
-    /// The same, as long as the search stays as it is, in memory of its own.
+    /// [`NeighborSearch::of_boxes`] with temporary buffers, which leaves the search unchanged.
     ///
     /// # Errors
     /// See [`NeighborError`].
@@ -212,7 +212,7 @@ impl NeighborSearch {
         Ok(())
     }
 
-    /// Sorts the sources into the grid; gives the largest pair radius, m.
+    /// Sorts the sources into the grid and returns the maximum pair radius, m.
     fn grid_of(
         &mut self,
         targets: Cloud<'_>,
@@ -249,7 +249,7 @@ impl NeighborSearch {
         Ok(radius)
     }
 
-    /// The largest pair radius, m.
+    /// The maximum pair radius, m.
     fn radius(
         &self,
         targets: Cloud<'_>,
@@ -318,7 +318,7 @@ mod tests {
             assert_eq!(row, all.row(i));
         }
 
-        // The others, some of them outside of the box of the first, with a radius of their own.
+        // The other particles, some outside the bounding box of the sources, have their own radius.
         let others: Vec<DVec3> = (300..400).map(|k| 1.3 * place(k)).collect();
         let (mut between, mut again) = (NeighborList::default(), NeighborList::default());
         let targets = Cloud::uniform(&others, 0.5);

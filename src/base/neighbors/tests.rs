@@ -1,4 +1,4 @@
-//! Case K5: lists against brute force.
+//! Case K5: neighbour lists against a brute-force search.
 
 use super::{
     Cloud, FirstOfCloud, NeighborError, NeighborList, NeighborSearch, Periodic, SupportRadii, VerletList,
@@ -28,7 +28,7 @@ fn random_cloud(seed: u64, count: usize, dim: usize) -> Vec<DVec3> {
     (0..count).map(|_| random.point(dim)).collect()
 }
 
-/// Nearest image by trying all of them, positions being anywhere.
+/// Minimum image by trying all of them, for arbitrary positions.
 fn distance_squared(x_i: DVec3, x_j: DVec3, lengths: DVec3) -> f64 {
     let mut d = x_j - x_i;
     for a in 0..3 {
@@ -49,7 +49,7 @@ fn support(cloud: Cloud<'_>, i: usize) -> f64 {
     }
 }
 
-/// Pairs whose distance is the radius to the last digits may fall on either side.
+/// Pairs whose distance equals the radius to round-off may be included or not.
 fn check(list: &NeighborList, targets: Cloud<'_>, sources: Option<Cloud<'_>>, skin: f64, lengths: DVec3) {
     let others = sources.unwrap_or(targets);
     assert_eq!(list.rows(), targets.positions.len());
@@ -138,12 +138,12 @@ fn degenerate_clouds() {
     let lattice: Vec<DVec3> = (0..400).map(|i| DVec3::new((i % 20) as f64, (i / 20) as f64, 0.0)).collect();
     let cloud = Cloud::uniform(&lattice, 2.0);
     let list = NeighborList::reference(cloud, &Periodic::NONE).unwrap();
-    // Strictly inside: the particles at exactly two spacings are no neighbours.
+    // The test is strict: particles at exactly two spacings are not neighbours.
     assert_eq!((list.max_count(), list.min_count()), (8, 3));
     let torus = Periodic::new(DVec3::ZERO, DVec3::new(20.0, 20.0, 0.0), [true, true, false]).unwrap();
     let list = NeighborList::reference(cloud, &torus).unwrap();
     assert!(list.counts().all(|n| n == 8));
-    // As narrow as can be: a cell and a half of the radius, and then exactly the radius, on each side.
+    // The narrowest domains: one and a half times the radius, and then exactly the radius, on each side.
     for narrow in [6.0, 4.0] {
         let strip: Vec<DVec3> =
             (0..400).map(|i| DVec3::new((i / 4) as f64, narrow / 4.0 * (i % 4) as f64, 0.0)).collect();
@@ -162,7 +162,8 @@ fn degenerate_clouds() {
     assert_eq!(list.counts().collect::<Vec<_>>(), [0, 0, 1, 1]);
 }
 
-/// A diagonal wire in a box of 10^17 cells: were work and memory in proportion to those, this would not end.
+/// A diagonal wire in a box of 10^17 cells: work and memory proportional to the number of cells would not be
+/// feasible.
 #[test]
 fn a_long_wire_is_as_cheap_as_a_block() {
     let count = 1_000_000;
@@ -183,8 +184,8 @@ fn same_bits_on_any_number_of_threads() {
     assert!(lists[0] == lists[1] && lists[0] == lists[2]);
 }
 
-/// The corners of cells are whole multiples of their length, and neighbours are in the order of cells also
-/// where these share buckets.
+/// The corners of cells are integer multiples of their length, and neighbours are in the order of cells even
+/// where cells share buckets.
 #[test]
 fn the_order_of_neighbours_does_not_hang_on_who_else_is_there() {
     let near = random_cloud(5, 400, 3);

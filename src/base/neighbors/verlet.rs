@@ -1,11 +1,12 @@
-//! Lists that live for several steps.
+//! Verlet lists, which are valid for several steps.
 
 use super::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic};
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// Neighbour list with a skin: it holds every pair within the mean support as long as no particle has moved
-/// more than half the skin since it was built, and some pairs beyond, where the kernel is zero.
+/// Neighbour list with a skin: it contains every pair within the mean support as long as no particle has
+/// moved more than half the skin since the build. It also contains some pairs beyond the support, where the
+/// kernel is zero.
 ///
 /// Targets and sources are one set (`sources: None`) or two. Support radii must not grow between builds: call
 /// [`VerletList::invalidate`] where they do, and after rows were removed or sorted.
@@ -34,7 +35,7 @@ impl VerletList {
         }
     }
 
-    /// Builds the list anew if it is stale and says whether it did.
+    /// Rebuilds the list if it is stale, and returns whether it did.
     ///
     /// # Errors
     /// See [`NeighborError`].
@@ -51,8 +52,8 @@ impl VerletList {
         Ok(stale)
     }
 
-    /// Builds the list from these positions. From [`VerletList::built_targets`] and
-    /// [`VerletList::built_sources`] of an earlier run it comes out the same.
+    /// Builds the list from the given positions. [`VerletList::built_targets`] and
+    /// [`VerletList::built_sources`] of an earlier run reproduce its list.
     ///
     /// # Errors
     /// See [`NeighborError`]; the list is then stale.
@@ -78,15 +79,16 @@ impl VerletList {
         Ok(())
     }
 
-    /// True when a particle is farther than half the skin from where it was, when their number is another, or
-    /// when the list was never built. A position that is NaN counts as far, so that the rebuild reports it.
+    /// True when a particle has moved more than half the skin, when the number of particles has changed, or
+    /// when the list was never built. A NaN position also makes the list stale, so that the rebuild reports
+    /// it.
     pub fn is_stale(&self, targets: &[DVec3], sources: Option<&[DVec3]>, periodic: &Periodic) -> bool {
         !self.valid
             || moved(&self.targets, targets, self.skin, periodic)
             || moved(&self.sources, sources.unwrap_or(&[]), self.skin, periodic)
     }
 
-    /// Makes the next update build the list anew.
+    /// Marks the list as stale, so that the next update rebuilds it.
     pub fn invalidate(&mut self) {
         self.valid = false;
     }
@@ -106,12 +108,12 @@ impl VerletList {
         self.builds
     }
 
-    /// Target positions (m) that the list was built from: what a checkpoint keeps.
+    /// Target positions (m) at the last build, which a checkpoint stores.
     pub fn built_targets(&self) -> &[DVec3] {
         &self.targets
     }
 
-    /// Source positions (m) that the list was built from, empty where the sources are the targets.
+    /// Source positions (m) at the last build; empty where the sources are the targets.
     pub fn built_sources(&self) -> &[DVec3] {
         &self.sources
     }

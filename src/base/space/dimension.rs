@@ -1,4 +1,4 @@
-//! Plane or space.
+//! Spatial dimension.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

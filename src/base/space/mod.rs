@@ -1,4 +1,4 @@
-//! The words of space that everything else uses: its dimension, and points as scenes write them.
+//! The spatial dimension, and points and vectors of scenes.
 
 mod dimension;
 mod vec3;
