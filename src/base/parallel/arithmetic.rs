@@ -1,19 +1,17 @@
 //! The arithmetic of an instruction path: numbers, and vectors of four lanes.
 //!
 //! A loop that is written with [`Lanes4`] and these operations keeps its vectors in registers of four lanes.
-//! Left to itself, the compiler takes rows of four apart and puts the pieces together in pairs: twice the
-//! instructions.
+//! Automatic vectorisation splits rows of four and recombines them in pairs, with twice the instructions.
 
 use super::lanes::{EIGHT, Lanes4, Lanes8};
 
-/// Operations on numbers of several lanes: what pair functions are written in. A hot loop gets the arithmetic
-/// of the instruction path that it is compiled for.
+/// Operations on SIMD lanes, in which pair functions are written. A hot loop receives the arithmetic of the
+/// instruction path for which it is compiled.
 pub trait Arithmetic: Copy + Send + Sync {
-    /// Number of axes of vectors; the components of those beyond it are zero, and no instruction is spent on
-    /// them.
+    /// Number of components of vectors; further components are zero and cost no instruction.
     const AXES: usize = 3;
 
-    /// A number for each lane.
+    /// One number per lane.
     type Lanes: Copy + Send + Sync;
 
     /// The same number in all lanes.
@@ -34,10 +32,10 @@ pub trait Arithmetic: Copy + Send + Sync {
     /// `a / b`, lane by lane.
     fn over(self, a: Self::Lanes, b: Self::Lanes) -> Self::Lanes;
 
-    /// The smaller one, lane by lane; `b` where one is not a number.
+    /// The minimum, lane by lane; `b` where one operand is NaN.
     fn smaller(self, a: Self::Lanes, b: Self::Lanes) -> Self::Lanes;
 
-    /// The larger one, lane by lane; `b` where one is not a number.
+    /// The maximum, lane by lane; `b` where one operand is NaN.
     fn larger(self, a: Self::Lanes, b: Self::Lanes) -> Self::Lanes;
 
     /// `c` in lanes where `a < b`, zero in the others.
@@ -52,7 +50,7 @@ pub trait Arithmetic: Copy + Send + Sync {
     /// Square root, lane by lane.
     fn sqrt(self, a: Self::Lanes) -> Self::Lanes;
 
-    /// `a`, or zero in lanes where it is not above zero.
+    /// `max(a, 0)`, lane by lane; zero where `a` is NaN.
     fn max_zero(self, a: Self::Lanes) -> Self::Lanes;
 
     /// `s a`.
@@ -73,12 +71,12 @@ pub trait EightLanes: Arithmetic<Lanes = Lanes8> {
     /// The same number in all lanes.
     fn same(self, value: f32) -> Lanes8;
 
-    /// `j - i` of numbers that go round at the ends of their range.
+    /// `j - i` with wrap-around at the ends of the integer range.
     fn apart(self, j: i32, i: [i32; EIGHT]) -> Lanes8;
 }
 
-/// The arithmetic of four lanes of double precision, in which a lane is a neighbour or a component: what hot
-/// loops over rows are written in.
+/// The arithmetic of four lanes of double precision, in which hot loops over rows are written; a lane is a
+/// neighbour or a component.
 pub trait FourLanes: Arithmetic<Lanes = Lanes4> {
     /// The same path with eight lanes of single precision.
     type Eight: EightLanes;
@@ -89,17 +87,16 @@ pub trait FourLanes: Arithmetic<Lanes = Lanes4> {
     /// `a b + c`.
     fn mul_add(self, a: f64, b: f64, c: f64) -> f64;
 
-    /// Asks the processor to bring a row into its cache, because it is going to be read or written; one
-    /// beyond the end is asked for in vain.
+    /// Prefetches a row into the cache before it is read or written; a row beyond the end has no effect.
     fn prefetch<T>(self, rows: &[T], row: usize);
 
-    /// The values whose bits are set, in their order; what follows them has no meaning.
+    /// The values whose bits are set, packed in their order; the remaining lanes are undefined.
     fn pack(self, values: [u32; 4], bits: usize) -> [u32; 4];
 
-    /// Rows and columns exchanged: four records of four numbers become four lanes of each number.
+    /// The transpose: four records of four numbers become four lanes of each number.
     fn transpose(self, rows: [Lanes4; 4]) -> [Lanes4; 4];
 
-    /// The sum of the lanes of each, in the order of [`Lanes4::sum`].
+    /// The sum over the lanes of each vector, in the order of [`Lanes4::sum`].
     #[inline(always)]
     fn sums(self, of: [Lanes4; 4]) -> Lanes4 {
         let [a, b, c, d] = self.transpose(of);
@@ -107,6 +104,6 @@ pub trait FourLanes: Arithmetic<Lanes = Lanes4> {
     }
 }
 
-/// The instructions that every processor of the architecture has.
+/// The baseline instruction set of the architecture.
 #[derive(Clone, Copy)]
 pub(super) struct Portable;

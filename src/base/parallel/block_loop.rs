@@ -4,8 +4,8 @@ use super::arithmetic::{EightLanes, FourLanes};
 use super::path::{HotLoop, run_wide};
 use super::plane::InPlane;
 
-/// A loop over blocks that is compiled once for every instruction path; what is said of [`HotLoop`] holds for
-/// it.
+/// A loop over blocks that is compiled once for every instruction path, with the same requirements as
+/// [`HotLoop`].
 pub trait BlockLoop {
     /// Result of the loop.
     type Output;
@@ -24,7 +24,7 @@ impl<L: BlockLoop> HotLoop for Wide<L> {
     }
 }
 
-/// Runs a loop over blocks on the best path of this processor, with vectors of the plane or of space.
+/// Runs a loop over blocks on the best path of this processor, with vectors of two or three components.
 #[inline]
 pub fn run_blocks_on<L: BlockLoop>(plane: bool, hot: L) -> L::Output {
     if plane { run_wide(InPlane(Wide(hot))) } else { run_wide(Wide(hot)) }

@@ -1,9 +1,9 @@
-//! Loops over blocks of rows: a block is always the same rows, whichever thread runs it, and sums are taken
-//! in block order, so that every result is independent of the number of threads.
+//! Loops over blocks of rows. The rows of a block are the same on any thread, and sums are taken in block
+//! order, so that every result is independent of the number of threads.
 
 use glam::DVec3;
 
-/// Rows per block: its columns fit the first-level cache between the steps of a fused pass.
+/// Rows per block. The columns of a block stay in the first-level cache between the steps of a fused pass.
 pub const BLOCK: usize = 64;
 
 /// Number of blocks of `len` rows.
@@ -11,7 +11,7 @@ pub fn block_count(len: usize) -> usize {
     len.div_ceil(BLOCK)
 }
 
-/// A bundle of slices over the same rows that can be cut in two, so that each half goes to its own thread.
+/// A set of slices over the same rows that can be split in two, one half for each thread.
 pub trait Split: Sized + Send {
     /// Number of rows.
     fn rows(&self) -> usize;
@@ -72,8 +72,8 @@ impl<S: Split> Split for Option<S> {
     }
 }
 
-/// Makes a struct of slices over the same rows a [`Split`]: `split_by_rows!(Rows { a, b } and { c })` cuts
-/// the fields a and b, each of which may also be empty, and hands c to both halves.
+/// Implements [`Split`] for a struct of slices over the same rows: `split_by_rows!(Rows { a, b } and { c })`
+/// splits the fields a and b, each of which may also be empty, and copies c to both halves.
 #[macro_export]
 macro_rules! split_by_rows {
     ($name:ident { $($field:ident),+ } $(and { $($same:ident),+ })?) => {
@@ -103,9 +103,9 @@ pub trait BlockSum: Copy + Default + Send {
     fn add(&mut self, next: &Self);
 }
 
-/// Runs `body(first_row, rows)` on every block of [`BLOCK`] rows, in parallel, and returns the sum of what
-/// the blocks return, taken pairwise along a tree that depends on the number of rows alone. `sums` is scratch
-/// memory, kept by the caller so that a step does not allocate.
+/// Runs `body(first_row, rows)` on every block of [`BLOCK`] rows, in parallel, and returns the sum of the
+/// results of the blocks, taken pairwise along a tree that depends on the number of rows alone. `sums` is
+/// scratch memory, kept by the caller so that a step does not allocate.
 pub fn for_each_block<S: Split, R: BlockSum>(
     rows: S,
     sums: &mut Vec<R>,
@@ -114,7 +114,7 @@ pub fn for_each_block<S: Split, R: BlockSum>(
     for_each_block_in_tasks(BLOCKS_PER_TASK, rows, sums, body)
 }
 
-/// [`for_each_block`] for loops that take microseconds a row: every block is a task.
+/// [`for_each_block`] with one task per block, for loops that take microseconds per row.
 pub fn for_each_heavy_block<S: Split, R: BlockSum>(
     rows: S,
     sums: &mut Vec<R>,
@@ -123,8 +123,8 @@ pub fn for_each_heavy_block<S: Split, R: BlockSum>(
     for_each_block_in_tasks(1, rows, sums, body)
 }
 
-/// [`for_each_block`] with that many blocks in a task: some twenty microseconds are worth handing over to
-/// another thread.
+/// [`for_each_block`] with a given number of blocks per task. A task of about twenty microseconds is worth
+/// scheduling on another thread.
 pub fn for_each_block_in_tasks<S: Split, R: BlockSum>(
     per_task: usize,
     rows: S,
@@ -140,7 +140,7 @@ pub fn for_each_block_in_tasks<S: Split, R: BlockSum>(
     total(sums)
 }
 
-/// The sum of what blocks return, pairwise along the tree of [`sum_over_blocks`].
+/// The sum of the results of blocks, pairwise along the tree of [`sum_over_blocks`].
 fn total<R: BlockSum>(sums: &[R]) -> R {
     match sums {
         [] => R::default(),
@@ -154,9 +154,9 @@ fn total<R: BlockSum>(sums: &[R]) -> R {
     }
 }
 
-/// Runs `body(first_row, rows)` on every block of [`BLOCK`] rows, in parallel, and returns the sum of what
-/// the blocks return: [`for_each_block`] for loops that keep no scratch memory. The sum is taken pairwise
-/// along a tree that depends on the number of rows alone.
+/// Runs `body(first_row, rows)` on every block of [`BLOCK`] rows, in parallel, and returns the sum of the
+/// results of the blocks. It is [`for_each_block`] for loops without scratch memory. The sum is taken
+/// pairwise along a tree that depends on the number of rows alone.
 pub fn sum_over_blocks<S: Split, R: BlockSum>(rows: S, body: &(impl Fn(usize, S) -> R + Sync)) -> R {
     match block_count(rows.rows()) {
         0 => R::default(),
@@ -164,8 +164,8 @@ pub fn sum_over_blocks<S: Split, R: BlockSum>(rows: S, body: &(impl Fn(usize, S)
     }
 }
 
-/// Blocks that a task runs in sequence: all of them where there is one thread, which need not be woken, as
-/// the caller does it.
+/// Blocks that a task runs in sequence. With one thread these are all blocks, which the calling thread runs
+/// itself without waking another.
 pub(super) fn blocks_of_task(usual: usize, count: usize) -> usize {
     if rayon::current_num_threads() == 1 { count } else { usual }
 }
@@ -204,14 +204,13 @@ pub(super) fn divide_and_sum<S: Split, R: BlockSum>(
     sum
 }
 
-/// `left` and `right`, on a thread each if there are two. rayon's join has a copy for every loop that calls
-/// it, a tenth of the program; this one is compiled once.
+/// Runs `left` and `right`, in parallel if there are two threads. rayon's join is instantiated for every loop
+/// that calls it, a tenth of the program; this one is compiled once.
 fn join(left: &mut (dyn FnMut() + Send), right: &mut (dyn FnMut() + Send)) {
     rayon::join(left, right);
 }
 
-/// Blocks that one task runs in sequence: small enough to balance threads, large enough to hide the
-/// hand-over.
+/// Blocks that one task runs in sequence: few enough for load balance, enough to hide the scheduling cost.
 pub(super) const BLOCKS_PER_TASK: usize = 16;
 
 fn divide<S: Split, R: BlockSum>(
@@ -293,7 +292,7 @@ mod tests {
     #[test]
     fn sums_are_the_same_on_any_number_of_threads() {
         let values: Vec<f64> = (0..10_007).map(|k| (f64::from(k) * 0.7).sin() * 1e3).collect();
-        // The tree, written down once more.
+        // A second implementation of the tree.
         fn along_tree(sums: &[f64]) -> f64 {
             let half = sums.len() / 2;
             if half == 0 { sums[0] } else { along_tree(&sums[..half]) + along_tree(&sums[half..]) }

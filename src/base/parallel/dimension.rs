@@ -1,4 +1,4 @@
-//! Hot loops with a plane and a solid version: in plane strain the third axis is left out of the sums.
+//! Hot loops in two- and three-dimensional versions; in plane strain the third axis is omitted from the sums.
 
 use super::arithmetic::FourLanes;
 use super::path::{HotLoop, run_hot};
@@ -20,7 +20,7 @@ impl<L: PlaneOrSpace, const D: usize> HotLoop for Axes<L, D> {
     }
 }
 
-/// Runs the plane or the solid version on the best instruction path of this processor.
+/// Runs the two- or three-dimensional version on the best instruction path of this processor.
 #[inline]
 pub fn run_hot_in<L: PlaneOrSpace>(plane: bool, hot: L) {
     if plane { run_hot(Axes::<L, 2>(hot)) } else { run_hot(Axes::<L, 3>(hot)) }

@@ -214,7 +214,7 @@ mod v3 {
 
         #[inline(always)]
         fn max_zero(self, a: Lanes8) -> Lanes8 {
-            // Where an operand is not a number the instruction gives the second one, zero.
+            // If an operand is NaN, the instruction returns the second one, zero.
             cast(self.0.avx._mm256_max_ps(cast(a), cast(Lanes8::ZERO)))
         }
     }

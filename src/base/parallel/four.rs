@@ -104,7 +104,7 @@ impl FourLanes for Portable {
 
     #[inline(always)]
     fn mul_add(self, a: f64, b: f64, c: f64) -> f64 {
-        // Where a fused multiply-add is not in the base instruction set it would be a call.
+        // A fused multiply-add would be a library call where the baseline instruction set lacks it.
         if cfg!(target_arch = "aarch64") { a.mul_add(b, c) } else { a * b + c }
     }
 
@@ -148,10 +148,10 @@ mod v3 {
 
     use super::{Arithmetic, Eight, FourLanes, Lanes4};
 
-    /// Bytes that a processor of this architecture brings into its cache at a time.
+    /// Size of a cache line of this architecture, bytes.
     const CACHE_LINE: usize = 64;
 
-    /// For every set of bits the bytes of the values whose bits are set.
+    /// Byte shuffle for each bit mask, which packs the values whose bits are set.
     const PACKED: [[u8; 16]; 16] = {
         let mut table = [[0x80; 16]; 16];
         let mut bits = 0;
@@ -240,7 +240,7 @@ mod v3 {
 
         #[inline(always)]
         fn max_zero(self, a: Lanes4) -> Lanes4 {
-            // Where an operand is not a number the instruction gives the second one, zero.
+            // If an operand is NaN, the instruction returns the second one, zero.
             cast::<f64x4, Lanes4>(self.max_f64x4(cast(a), cast(Lanes4::ZERO)))
         }
     }

@@ -1,8 +1,8 @@
-//! Vectors of four lanes: three components and one more number, so that a row is one aligned load. Vectors of
-//! eight lanes of single precision: a number of each particle of a block.
+//! Vectors of four lanes hold three components and one more number, so that a row is one aligned load.
+//! Vectors of eight lanes of single precision hold one number for each particle of a block.
 //!
-//! Hot loops calculate with them by the operations of [`Arithmetic`](super::Arithmetic). The lanes are
-//! written out: a closure would not be compiled for the instruction path of the loop it is used in.
+//! Hot loops use the operations of [`Arithmetic`](super::Arithmetic) on them. The lanes are written out,
+//! because a closure would not be compiled for the instruction path of its loop.
 
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
@@ -13,7 +13,7 @@ use glam::DVec3;
 pub struct Lanes4(pub [f64; 4]);
 
 impl Default for Lanes4 {
-    /// Zero. A derived implementation would call that of arrays, which does not end up inside of hot loops.
+    /// Zero. A derived implementation would call that of arrays, which is not inlined in hot loops.
     #[inline(always)]
     fn default() -> Self {
         Self::ZERO
@@ -48,20 +48,20 @@ impl Lanes4 {
         DVec3::new(self.0[0], self.0[1], self.0[2])
     }
 
-    /// Difference, outside of hot loops: those use [`Arithmetic`](super::Arithmetic).
+    /// Difference, for code outside of hot loops, which use [`Arithmetic`](super::Arithmetic).
     #[inline(always)]
     pub fn minus(self, o: Self) -> Self {
         Self([self.0[0] - o.0[0], self.0[1] - o.0[1], self.0[2] - o.0[2], self.0[3] - o.0[3]])
     }
 
-    /// Sum of the products of the first three lanes.
+    /// Scalar product of the first three lanes.
     #[inline(always)]
     pub fn dot3(self, o: Self) -> f64 {
         self.0[0] * o.0[0] + self.0[1] * o.0[1] + self.0[2] * o.0[2]
     }
 }
 
-/// Lanes of a block.
+/// Number of lanes of a block.
 pub const EIGHT: usize = 8;
 
 /// Eight numbers in one vector register.
@@ -82,7 +82,7 @@ impl Lanes8 {
 }
 
 impl Default for Lanes8 {
-    /// Zero. A derived implementation would call that of arrays, which does not end up inside of hot loops.
+    /// Zero. A derived implementation would call that of arrays, which is not inlined in hot loops.
     #[inline(always)]
     fn default() -> Self {
         Self::ZERO

@@ -1,16 +1,16 @@
-//! The largest of numbers, as a sum over blocks.
+//! The maximum as a reduction over blocks.
 
 use bytemuck::{Pod, Zeroable};
 
 use super::BlockSum;
 
-/// The largest number so far; not a number as soon as one of them is none.
+/// The maximum so far; NaN as soon as one number is NaN.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
 pub struct Largest(pub f64);
 
 impl Largest {
-    /// The largest of numbers that are not negative.
+    /// The maximum of non-negative numbers.
     #[inline]
     pub fn of(numbers: impl Iterator<Item = f64>) -> Self {
         numbers.fold(Self::default(), |mut largest, number| {
@@ -23,7 +23,7 @@ impl Largest {
 impl BlockSum for Largest {
     #[inline]
     fn add(&mut self, next: &Self) {
-        // Not the larger one of the two by `max`, which would drop what is not a number.
+        // `f64::max` is avoided, because it would discard NaN.
         if next.0.is_nan() || next.0 > self.0 {
             self.0 = next.0;
         }

@@ -1,4 +1,5 @@
-//! Parallel loops with the same result on any number of threads, and the instruction path of the hot loops.
+//! Parallel loops whose results do not depend on the number of threads, and the instruction path of hot
+//! loops.
 
 mod arithmetic;
 mod block_loop;

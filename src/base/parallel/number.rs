@@ -1,13 +1,13 @@
-//! Numbers and vectors of several pairs at once, with operators: what pair functions are written in.
+//! SIMD numbers and vectors of several pairs, with operators, in which pair functions are written.
 //!
-//! A pair function is generic over [`Arithmetic`], and is compiled for every instruction path, in the plane
-//! and in space. Mark it `#[inline(always)]`: a call would leave the instruction path.
+//! A pair function is generic over [`Arithmetic`], and is compiled for every instruction path, in two and
+//! three dimensions. It must be `#[inline(always)]`, because a call would leave the instruction path.
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 use super::arithmetic::Arithmetic;
 
-/// A number for each lane: four neighbours, or eight particles in single precision.
+/// One number per lane: four neighbours, or eight particles in single precision.
 #[derive(Clone, Copy)]
 pub struct Number<A: Arithmetic> {
     lanes: A::Lanes,
@@ -15,7 +15,7 @@ pub struct Number<A: Arithmetic> {
 }
 
 impl<A: Arithmetic> Number<A> {
-    /// These numbers.
+    /// A vector of the given lanes.
     #[inline(always)]
     pub fn new(arithmetic: A, lanes: A::Lanes) -> Self {
         Self { lanes, arithmetic }
@@ -33,7 +33,7 @@ impl<A: Arithmetic> Number<A> {
         Self { lanes: arithmetic.splat(0.0), arithmetic }
     }
 
-    /// The numbers.
+    /// The lanes.
     #[inline(always)]
     pub fn lanes(self) -> A::Lanes {
         self.lanes
@@ -63,25 +63,25 @@ impl<A: Arithmetic> Number<A> {
         self * self
     }
 
-    /// The smaller of each number and `limit`.
+    /// The minimum of each number and `limit`.
     #[inline(always)]
     pub fn min(self, limit: f64) -> Self {
         self.with(self.arithmetic.smaller(self.lanes, self.arithmetic.splat(limit)))
     }
 
-    /// The larger of each number and `limit`.
+    /// The maximum of each number and `limit`.
     #[inline(always)]
     pub fn max(self, limit: f64) -> Self {
         self.with(self.arithmetic.larger(self.lanes, self.arithmetic.splat(limit)))
     }
 
-    /// `value` where the number is below `limit`, zero elsewhere: what a branch would be.
+    /// `value` where the number is below `limit`, zero elsewhere; it replaces a branch.
     #[inline(always)]
     pub fn if_below(self, limit: f64, value: Self) -> Self {
         self.with(self.arithmetic.where_below(self.lanes, self.arithmetic.splat(limit), value.lanes))
     }
 
-    /// `self b + c`, rounded once where the processor can.
+    /// `self b + c`, rounded once where the processor has a fused multiply-add.
     #[inline(always)]
     pub fn mul_add(self, b: Self, c: Self) -> Self {
         self.with(self.arithmetic.times_add(self.lanes, b.lanes, c.lanes))

@@ -1,7 +1,8 @@
-//! Loops over the blocks of this rank; of a program that runs alone, these are all blocks.
+//! Loops over the blocks of this rank, which are all blocks in a serial run.
 //!
-//! What such a loop writes is there for the rows of this rank alone, until it is exchanged: [`share_rows`],
-//! or the columns of the world by themselves when they are read. Sums are those over the blocks of all ranks.
+//! The results of such a loop exist for the rows of this rank alone until they are exchanged, by
+//! [`share_rows`] or automatically when a column of the world is read. Sums are those over the blocks of all
+//! ranks.
 
 use std::ops::Range;
 
@@ -26,25 +27,25 @@ pub fn others_rows(body: &Range<usize>) -> [Range<usize>; 2] {
     [body.start..own.start, own.end..body.end]
 }
 
-/// Those of some rows of a body that this rank computes; an empty range within them where there are none.
+/// The rows of a part of a body that this rank computes; an empty range within the part if there are none.
 pub fn own_part(body: &Range<usize>, part: &Range<usize>) -> Range<usize> {
     let own = own_rows(body);
     let within = |row: usize| row.clamp(part.start, part.end.max(part.start));
     within(own.start)..within(own.end)
 }
 
-/// Exchanges a part of the rows of a body, of `width` values each, of which every rank has computed its own.
+/// Exchanges a part of the rows of a body, of `width` values each, after every rank has computed its own.
 pub fn share_part<T: Pod>(values: &mut [T], width: usize, part: &Range<usize>, body: &Range<usize>) {
     let before = |row: usize| ((body.start + row).clamp(part.start, part.end) - part.start) * width;
     ranks::share_some(values, body.len(), BLOCK, before);
 }
 
-/// Exchanges the rows of a body, of which every rank has computed its own.
+/// Exchanges the rows of a body after every rank has computed its own.
 pub fn share_rows<T: Pod>(rows: &mut [T]) {
     ranks::share(rows, BLOCK);
 }
 
-/// Exchanges the rows of a body of `width` values each, of which every rank has computed its own.
+/// Exchanges the rows of a body, of `width` values each, after every rank has computed its own.
 pub fn share_wide_rows<T: Pod>(values: &mut [T], width: usize) {
     let rows = values.len() / width;
     let bytes = bytemuck::cast_slice_mut(values);
@@ -56,13 +57,15 @@ pub fn share_rows_of<T: Pod>(rows: &mut [T], bodies: impl Iterator<Item = Range<
     ranks::share_bodies(bytemuck::cast_slice_mut(rows), size_of::<T>(), BLOCK, bodies);
 }
 
-/// Exchanges values of some rows of a body, which ascend; every rank has computed those of its own rows.
+/// Exchanges values of some rows of a body, in ascending order, after every rank has computed those of its
+/// own rows.
 pub fn share_picked<T: Pod>(values: &mut [T], rows: &[u32], body: &Range<usize>) {
     let before = |row: usize| rows.partition_point(|other| (*other as usize) < body.start + row);
     ranks::share_some(values, body.len(), BLOCK, before);
 }
 
-/// [`for_each_block`](super::for_each_block) over the blocks of this rank. The rows are all those of a body.
+/// [`for_each_block`](super::for_each_block) over the blocks of this rank. The rows must be all those of a
+/// body.
 pub fn for_each_own_block<S: Split, R: BlockSum + Pod>(
     rows: S,
     sums: &mut Vec<R>,
@@ -71,7 +74,7 @@ pub fn for_each_own_block<S: Split, R: BlockSum + Pod>(
     for_each_own_block_in_tasks(BLOCKS_PER_TASK, rows, sums, body)
 }
 
-/// [`for_each_own_block`] with that many blocks in a task.
+/// [`for_each_own_block`] with a given number of blocks per task.
 pub fn for_each_own_block_in_tasks<S: Split, R: BlockSum + Pod>(
     per_task: usize,
     rows: S,
@@ -84,7 +87,7 @@ pub fn for_each_own_block_in_tasks<S: Split, R: BlockSum + Pod>(
     }
 }
 
-/// [`sum_over_blocks`] over the blocks of all ranks, each of which runs its own.
+/// [`sum_over_blocks`] over the blocks of all ranks; each rank runs its own.
 pub fn sum_over_own_blocks<S: Split, R: BlockSum + Pod>(
     rows: S,
     body: &(impl Fn(usize, S) -> R + Sync),

@@ -1,10 +1,10 @@
-//! The instruction path: one binary runs on any x86-64 machine, and uses AVX2 and FMA, or AVX-512, where the
-//! processor has them.
+//! The instruction path. One binary runs on any x86-64 machine, and uses AVX2 and FMA, or AVX-512, where
+//! available.
 //!
-//! A hot loop is written once, generic over [`FourLanes`], and compiled for every path. With FMA a
-//! multiply-add rounds once, so that the last bits differ from those of the baseline. AVX-512 adds registers
-//! (thirty-two in the place of sixteen) and masks, but vectors stay as long and sums keep their order: its
-//! bits are those of AVX2.
+//! A hot loop is written once, generic over [`FourLanes`], and compiled for every path. A multiply-add rounds
+//! once with FMA, so the last bits differ from those of the baseline. AVX-512 adds registers (thirty-two
+//! instead of sixteen) and masks. Vector lengths and the order of sums are unchanged, so its results are
+//! bitwise those of AVX2.
 
 use std::sync::OnceLock;
 
@@ -14,7 +14,7 @@ use super::arithmetic::{FourLanes, Portable};
 
 /// A loop that is compiled once for every instruction path.
 ///
-/// Everything that [`HotLoop::run`] calls must be `#[inline(always)]`, or it stays behind on the portable
+/// Everything that [`HotLoop::run`] calls must be `#[inline(always)]`, or it is compiled for the portable
 /// path.
 pub trait HotLoop {
     /// Result of the loop.
@@ -23,7 +23,7 @@ pub trait HotLoop {
     fn run<A: FourLanes>(self, arithmetic: A) -> Self::Output;
 }
 
-/// Why an instruction path cannot be taken.
+/// Error of selecting an instruction path.
 #[derive(Debug, Error, PartialEq, Eq)]
 pub enum PathError {
     /// No path has that name, or this processor does not have its instructions.
@@ -32,7 +32,7 @@ pub enum PathError {
         /// The requested name.
         name: String,
     },
-    /// Loops have run on another one.
+    /// Loops have already run on another path.
     #[error("the instruction path is {0} already")]
     Taken(&'static str),
 }
@@ -44,10 +44,10 @@ mod paths {
 
     use super::{HotLoop, Portable};
 
-    // Inlined, a loop is compiled beside its caller: without that the compiler puts all hot loops of a crate
-    // into one unit, which one core then compiles alone.
+    // Inlining compiles a loop in the unit of its caller. Without it the compiler places all hot loops of a
+    // crate in one unit, which a single core compiles.
 
-    /// A path that this processor has.
+    /// A path supported by this processor.
     #[derive(Clone, Copy)]
     pub enum Path {
         Baseline,
@@ -67,7 +67,7 @@ mod paths {
     }
 
     impl Path {
-        /// Those that this processor has, the best one first.
+        /// The paths supported by this processor, the best one first.
         pub fn all() -> impl Iterator<Item = Self> {
             let wide = V4::try_new().map(Self::V4).into_iter().chain(V3::try_new().map(Self::V3));
             wide.chain([Self::Baseline])
@@ -145,8 +145,8 @@ fn names() -> String {
     Path::all().map(Path::name).collect::<Vec<_>>().join(", ")
 }
 
-/// Runs a hot loop over rows on the instruction path of this program. AVX-512 is left out: what gathers and
-/// transposes is no faster with it.
+/// Runs a hot loop over rows on the instruction path of this program. AVX-512 is not used, because gathers
+/// and transposes are no faster with it.
 #[inline]
 pub fn run_hot<L: HotLoop>(hot: L) -> L::Output {
     path().run(hot)
@@ -158,16 +158,16 @@ pub(super) fn run_wide<L: HotLoop>(hot: L) -> L::Output {
     path().run_wide(hot)
 }
 
-/// Name of the instruction path in use, such as `x86-64-v3`: the best that this processor has, unless another
-/// one was taken.
+/// Name of the instruction path in use, such as `x86-64-v3`: the best one supported by this processor, unless
+/// another one was selected.
 pub fn instruction_path() -> &'static str {
     PATH.get().copied().unwrap_or_else(best).name()
 }
 
-/// Takes the instruction path of that name for the whole program, before any loop has run.
+/// Selects the instruction path of that name for the whole program, before any loop has run.
 ///
 /// # Errors
-/// The processor does not have it, or loops have run on another one.
+/// The processor does not support it, or loops have run on another path.
 pub fn take_instruction_path(name: &str) -> Result<(), PathError> {
     let asked = Path::all().find(|path| path.name() == name);
     let asked = asked.ok_or_else(|| PathError::Absent { name: name.to_owned() })?;
@@ -175,7 +175,7 @@ pub fn take_instruction_path(name: &str) -> Result<(), PathError> {
     if taken == asked.name() { Ok(()) } else { Err(PathError::Taken(taken)) }
 }
 
-/// Whether two instruction paths make the same bits.
+/// Whether two instruction paths give bitwise equal results.
 pub fn have_same_bits(one: &str, other: &str) -> bool {
     let rounding = |path| if path == "x86-64-v4" { "x86-64-v3" } else { path };
     rounding(one) == rounding(other)

@@ -1,9 +1,9 @@
-//! Rows of a column that a list names, shared out to threads.
+//! Listed rows of a column, distributed over threads.
 
 use super::Split;
 
-/// The rows of a column that an ascending list of numbers names, open for changes. Where it is cut, the
-/// column is cut between two of them: threads write to what is theirs, and none scatters for all.
+/// Mutable access to the rows of a column in an ascending list of row numbers. A split divides the column
+/// between two listed rows, so that each thread writes to its own part and no serial scatter is needed.
 pub struct Picked<'a, T> {
     numbers: &'a [u32],
     column: &'a mut [T],
@@ -12,7 +12,7 @@ pub struct Picked<'a, T> {
 }
 
 impl<'a, T> Picked<'a, T> {
-    /// The rows of `column` with these numbers, ascending.
+    /// The rows of `column` with the given numbers, which ascend.
     pub fn new(numbers: &'a [u32], column: &'a mut [T]) -> Self {
         Self { numbers, column, first: 0 }
     }
@@ -23,7 +23,7 @@ impl<'a, T> Picked<'a, T> {
         self.numbers.len()
     }
 
-    /// Whether there is none.
+    /// Whether there are no rows.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.numbers.is_empty()

@@ -1,10 +1,10 @@
-//! The arithmetic of a plane: the same instructions, and vectors without a third component.
+//! Two-dimensional arithmetic: the same instructions on vectors without a third component.
 
 use super::arithmetic::{Arithmetic, EightLanes, FourLanes};
 use super::lanes::{EIGHT, Lanes4, Lanes8};
 use super::path::{HotLoop, run_hot};
 
-/// An instruction path whose vectors lie in the plane of x and y.
+/// An instruction path with vectors in the x-y plane.
 #[derive(Clone, Copy)]
 pub struct Plane<A>(A);
 
@@ -77,7 +77,7 @@ impl<L: HotLoop> HotLoop for InPlane<L> {
     }
 }
 
-/// Runs a hot loop on the best path of this processor, with vectors of the plane or of space.
+/// Runs a hot loop on the best path of this processor, with vectors of two or three components.
 #[inline]
 pub fn run_hot_on<L: HotLoop>(plane: bool, hot: L) -> L::Output {
     if plane { run_hot(InPlane(hot)) } else { run_hot(hot) }

@@ -1,4 +1,4 @@
-//! Vectors and matrices of several pairs at once.
+//! SIMD vectors and matrices of several pairs.
 
 use std::ops::{Add, AddAssign, Div, Mul, Sub, SubAssign};
 
@@ -8,7 +8,7 @@ use super::arithmetic::{Arithmetic, FourLanes};
 use super::lanes::Lanes4;
 use super::number::Number;
 
-/// A vector for each lane; in the plane its z is zero.
+/// One vector per lane; in two dimensions its z is zero.
 #[derive(Clone, Copy)]
 pub struct Vector<A: Arithmetic> {
     /// Components along x.
@@ -20,7 +20,7 @@ pub struct Vector<A: Arithmetic> {
 }
 
 impl<A: Arithmetic> Vector<A> {
-    /// Vectors by their components.
+    /// Vectors of the given components.
     #[inline(always)]
     pub fn new(a: A, [x, y, z]: [A::Lanes; 3]) -> Self {
         let z = if A::AXES == 3 { z } else { a.splat(0.0) };
@@ -46,7 +46,7 @@ impl<A: Arithmetic> Vector<A> {
         if A::AXES == 3 { self.z.mul_add(other.z, plane) } else { plane }
     }
 
-    /// Squares of the lengths.
+    /// Squared lengths.
     #[inline(always)]
     pub fn length_squared(self) -> Number<A> {
         self.dot(self)
@@ -139,7 +139,7 @@ impl<A: Arithmetic> SubAssign for Vector<A> {
     }
 }
 
-/// A matrix for each lane, by its columns.
+/// One matrix per lane, by its columns.
 #[derive(Clone, Copy)]
 pub struct Matrix<A: Arithmetic>(pub [Vector<A>; 3]);
 

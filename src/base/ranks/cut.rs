@@ -1,26 +1,27 @@
-//! Which part of a loop a rank computes.
+//! The partition of loops over ranks.
 
 use std::ops::Range;
 
-/// Longest time of a rank over the mean above which loops are divided anew.
+/// Ratio of the longest time of a rank to the mean, above which loops are repartitioned.
 const UNEVEN: f64 = 1.05;
-/// Share that a rank without one is taken to have had.
+/// Share assumed for a rank whose share is zero.
 const LEAST: f64 = 1e-3;
 
-/// Load of a rank over the mean above which blocks that differ are divided by their weights.
+/// Ratio of the load of a rank to its share, above which blocks of unequal cost are partitioned by their
+/// weights.
 const UNEVEN_WEIGHTS: f64 = 1.1;
 
-/// Shares of the ranks in every loop: rank r computes the part from `bounds[r]` to `bounds[r + 1]`. Results
-/// do not depend on it.
+/// Partition of every loop over the ranks: rank r computes the part from `bounds[r]` to `bounds[r + 1]`.
+/// Results do not depend on the partition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cut {
     bounds: Vec<f64>,
-    /// Of loops over that many blocks, which differ: where the part of each rank ends.
+    /// End of the part of each rank in loops over a given number of blocks of unequal cost.
     weighed: Vec<(usize, Vec<usize>)>,
 }
 
 impl Cut {
-    /// Equal shares of `size` ranks.
+    /// Equal shares for `size` ranks.
     pub fn even(size: usize) -> Self {
         Self::by_weights(&vec![1.0; size])
     }
@@ -38,20 +39,20 @@ impl Cut {
             before += weight / sum;
             bounds.push(before.min(1.0));
         }
-        // The last rank with a share has all that is left, whatever rounding makes of the sum.
+        // The last rank with a share takes the remainder, so that rounding of the sum loses nothing.
         let last = weights.iter().rposition(|weight| *weight > 0.0).unwrap_or(0);
         bounds[last + 1..].fill(1.0);
         Self { bounds, weighed: Vec::new() }
     }
 
-    /// A cut by which ranks that have worked for so long, s, on their shares are ready together; none where
-    /// they nearly are, or where nothing was measured.
+    /// A partition that balances the load, from the time, s, that each rank has spent on its share; `None`
+    /// where the load is nearly balanced or no time was measured.
     pub fn balanced(&self, seconds: &[f64]) -> Option<Self> {
         let (longest, sum) = (seconds.iter().copied().fold(0.0, f64::max), seconds.iter().sum::<f64>());
         if sum <= 0.0 || longest * seconds.len() as f64 <= UNEVEN * sum {
             return None;
         }
-        // Half of the way: times scatter.
+        // Half of the correction is applied, because times scatter.
         let share = |rank: usize| self.bounds[rank + 1] - self.bounds[rank];
         let speeds: Vec<f64> =
             (0..seconds.len()).map(|k| share(k).max(LEAST) / seconds[k].max(1e-9)).collect();
@@ -60,7 +61,7 @@ impl Cut {
         Some(Self::by_weights(&weights))
     }
 
-    /// Blocks of rank `rank` among `count`.
+    /// Blocks of rank `rank` in a loop over `count` blocks.
     pub fn blocks(&self, rank: usize, count: usize) -> Range<usize> {
         if let Some((_, ends)) = self.weighed.iter().find(|(weighed, _)| *weighed == count) {
             return rank.checked_sub(1).map_or(0, |before| ends[before])..ends[rank];
@@ -69,8 +70,8 @@ impl Cut {
         bound(rank)..bound(rank + 1)
     }
 
-    /// The cut that gives ranks their shares of the weights of blocks, in loops over as many; none where they
-    /// have them, or where nothing weighs.
+    /// The partition by the weights of blocks, for loops over as many blocks; `None` where the weights are
+    /// balanced already or are all zero.
     pub fn weighed(&self, weights: &[f64]) -> Option<Self> {
         let (count, sum) = (weights.len(), weights.iter().sum::<f64>());
         let share = |rank: usize| self.bounds[rank + 1] - self.bounds[rank];
@@ -81,7 +82,7 @@ impl Cut {
         }
         let (mut end, mut before) = (0, 0.0);
         let ends = self.bounds[1..].iter().map(|bound| {
-            // A block goes to the rank that has the most of it.
+            // A block goes to the rank with the largest part of it.
             while end < count && before + 0.5 * weights[end] < bound * sum {
                 before += weights[end];
                 end += 1;
@@ -89,7 +90,7 @@ impl Cut {
             end
         });
         let mut ends: Vec<usize> = ends.collect();
-        // Whatever rounding makes of the sum: the last rank with a share has all that is left.
+        // The last rank with a share takes the remainder, so that rounding of the sum loses nothing.
         let last = (0..self.size()).rposition(|rank| share(rank) > 0.0).unwrap_or(0);
         ends[last..].fill(count);
         let mut cut = self.clone();

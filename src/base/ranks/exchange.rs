@@ -1,4 +1,4 @@
-//! Exchange of rows: every rank has computed its own, afterwards all ranks have all.
+//! Exchange of rows: every rank has computed its own rows, and afterwards every rank has all rows.
 
 use std::ops::Range;
 
@@ -6,17 +6,17 @@ use bytemuck::Pod;
 
 use super::group::{self, RankGroup};
 
-/// Bytes of a row that is old.
+/// Byte value of a stale row.
 pub(super) const SPOILED: u8 = 0xff;
 
-/// Exchanges the rows of one body, of which every rank has computed its blocks of `block` rows.
+/// Exchanges the rows of one body after every rank has computed its blocks of `block` rows.
 pub fn share<T: Pod>(rows: &mut [T], block: usize) {
     let len = rows.len();
     share_bodies(bytemuck::cast_slice_mut(rows), size_of::<T>(), block, std::iter::once(0..len));
 }
 
-/// Exchanges the rows of several bodies, of `size` bytes each, of which every rank has computed its blocks:
-/// those of all bodies in one exchange.
+/// Exchanges the rows of several bodies, of `size` bytes each, in one exchange, after every rank has computed
+/// its blocks.
 pub fn share_bodies(
     bytes: &mut [u8],
     size: usize,
@@ -34,8 +34,8 @@ pub fn share_bodies(
     });
 }
 
-/// Exchanges values of some rows of a body of `len` rows, of which every rank has computed those in its
-/// blocks: `end` gives the number of values before a row of the body.
+/// Exchanges values of some rows of a body of `len` rows, after every rank has computed those in its blocks.
+/// `end` is the number of values before a row of the body.
 pub fn share_some<T: Pod>(values: &mut [T], len: usize, block: usize, end: impl Fn(usize) -> usize) {
     group::with(|group| {
         let mut cuts = std::mem::take(&mut group.cuts);
@@ -49,8 +49,7 @@ pub fn share_some<T: Pod>(values: &mut [T], len: usize, block: usize, end: impl 
     });
 }
 
-/// Makes the rows of other ranks unusable, where that is wanted ([`super::spoil_old_rows`]): all bits are
-/// set, which is NaN.
+/// Invalidates the rows of other ranks if [`super::spoil_old_rows`] is on: all bits are set, which is NaN.
 pub fn spoil_others(bytes: &mut [u8], size: usize, block: usize, bodies: impl Iterator<Item = Range<usize>>) {
     group::with(|group| {
         let own = group.ranks.rank();

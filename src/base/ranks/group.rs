@@ -21,14 +21,14 @@ pub(super) struct RankGroup {
     pub ranks: Rc<dyn Ranks>,
     pub cut: Cut,
     pub traffic: Traffic,
-    /// Time spent in loops that are divided since the last look at it, s.
+    /// Time spent in partitioned loops since the last [`balanced_cut`], s.
     pub busy: f64,
-    /// Memory in which parts are put together, and in which others arrive.
+    /// Send buffer, and receive buffer.
     pub parts: Vec<u8>,
     pub received: Vec<u8>,
-    /// Memory of bounds.
+    /// Buffer of part bounds.
     pub cuts: Vec<usize>,
-    /// Whether rows that have become old are made unusable.
+    /// Whether stale rows are invalidated.
     pub spoils: bool,
 }
 
@@ -39,7 +39,7 @@ impl RankGroup {
         (blocks.start * block).min(len)..(blocks.end * block).min(len)
     }
 
-    /// [`Ranks::share`], counted.
+    /// [`Ranks::share`] with a count of the traffic.
     pub fn share(&mut self, bytes: &mut [u8], cuts: &[usize]) {
         let rank = self.ranks.rank();
         self.traffic.exchanges += 1;
@@ -47,7 +47,7 @@ impl RankGroup {
         self.ranks.share(bytes, cuts);
     }
 
-    /// [`Ranks::exchange`], counted.
+    /// [`Ranks::exchange`] with a count of the traffic.
     pub fn exchange(&mut self, sent: SentParts<'_>, received: ReceivedParts<'_>) {
         self.traffic.exchanges += 1;
         self.traffic.bytes += received.bytes.len() as u64;
@@ -59,7 +59,7 @@ thread_local! {
     static GROUP: RefCell<Option<RankGroup>> = const { RefCell::new(None) };
 }
 
-/// Leaves the ranks when dropped, also where what was carried out has panicked.
+/// Leaves the ranks when dropped, even after a panic.
 struct Leave;
 
 impl Drop for Leave {
@@ -68,7 +68,7 @@ impl Drop for Leave {
     }
 }
 
-/// Carries `f` out as one of these ranks: exchanges that this thread begins in it are theirs.
+/// Runs `f` as one of the given ranks, which take part in all exchanges that this thread begins in it.
 pub fn enter<T>(ranks: Rc<dyn Ranks>, f: impl FnOnce() -> T) -> T {
     let cut = Cut::even(ranks.size());
     let several = ranks.size() > 1;
@@ -86,7 +86,7 @@ pub fn enter<T>(ranks: Rc<dyn Ranks>, f: impl FnOnce() -> T) -> T {
     f()
 }
 
-/// Calls `f` with the group and returns its result, or `None` for a program that runs alone.
+/// Calls `f` with the group and returns its result, or `None` in a serial run.
 pub(super) fn with<T>(f: impl FnOnce(&mut RankGroup) -> T) -> Option<T> {
     GROUP.with_borrow_mut(|group| group.as_mut().map(f))
 }
@@ -96,8 +96,8 @@ pub fn has_several() -> bool {
     GROUP.with_borrow(Option::is_some)
 }
 
-/// Makes rows of other ranks unusable from now on once they are old, as debug builds do: a pass that reads
-/// one computes with NaN.
+/// Invalidates stale rows of other ranks from now on, as debug builds do, so that a pass that reads one
+/// computes NaN.
 pub fn spoil_old_rows() {
     with(|group| group.spoils = true);
 }
@@ -112,7 +112,7 @@ pub fn own_blocks(count: usize) -> Range<usize> {
     with(|group| group.cut.blocks(group.ranks.rank(), count)).unwrap_or(0..count)
 }
 
-/// Runs a part of a divided loop, and counts the time that this rank spends in it.
+/// Runs a part of a partitioned loop, and measures the time that this rank spends in it.
 pub(crate) fn work<T>(f: impl FnOnce() -> T) -> T {
     let begun = Instant::now();
     let done = f();
@@ -120,23 +120,23 @@ pub(crate) fn work<T>(f: impl FnOnce() -> T) -> T {
     done
 }
 
-/// A cut by which all ranks would be ready together, from the time that each has spent in divided loops since
-/// this was asked last; none where they nearly are. It is the same on all ranks.
+/// A partition that balances the load, from the time that each rank has spent in partitioned loops since the
+/// last call; `None` where the load is nearly balanced. It is the same on all ranks.
 pub fn balanced_cut() -> Option<Cut> {
     let busy = with(|group| std::mem::take(&mut group.busy))?;
     let seconds: Vec<f64> = gather(busy.to_bits()).into_iter().map(f64::from_bits).collect();
     with(|group| group.cut.balanced(&seconds))?
 }
 
-/// The division of loops; none in a program that runs alone.
+/// The partition of loops; `None` in a serial run.
 pub fn cut() -> Option<Cut> {
     with(|group| group.cut.clone())
 }
 
-/// Divides loops anew, between two steps, with the same cut on all ranks.
+/// Repartitions loops, between two steps, with the same partition on all ranks.
 ///
 /// # Panics
-/// The cut is one for another number of ranks.
+/// The partition is for another number of ranks.
 pub fn set_cut(cut: Cut) {
     with(|group| {
         assert_eq!(cut.size(), group.ranks.size(), "a cut for another number of ranks");
@@ -144,8 +144,8 @@ pub fn set_cut(cut: Cut) {
     });
 }
 
-/// Ends all ranks at once, as this one cannot go on and the others do not know; does nothing in a program
-/// that runs alone.
+/// Aborts all ranks, because this one cannot continue and the others are unaware of it; does nothing in a
+/// serial run.
 pub fn abort(code: i32) {
     let ranks = with(|group| Rc::clone(&group.ranks));
     if let Some(ranks) = ranks {
@@ -153,12 +153,12 @@ pub fn abort(code: i32) {
     }
 }
 
-/// Data exchanged by this rank since it entered.
+/// Traffic of this rank since it entered.
 pub fn traffic() -> Traffic {
     with(|group| group.traffic).unwrap_or_default()
 }
 
-/// The values of all ranks.
+/// Gathers the values of all ranks.
 pub(super) fn gather(value: u64) -> Vec<u64> {
     let values = with(|group| {
         let (rank, size) = (group.ranks.rank(), group.ranks.size());
@@ -171,7 +171,7 @@ pub(super) fn gather(value: u64) -> Vec<u64> {
     values.unwrap_or_else(|| vec![value])
 }
 
-/// Whether it is so on any rank.
+/// Whether the value is true on any rank.
 pub fn any(value: bool) -> bool {
     gather(value.into()).contains(&1)
 }

@@ -1,4 +1,4 @@
-//! Rows beside those of a rank: exchanged where a pass reads neighbours and nothing else of the other ranks.
+//! Halo rows of a rank, for passes that read only neighbours among the rows of other ranks.
 
 use std::ops::Range;
 
@@ -9,25 +9,25 @@ use super::collective::{ReceivedParts, SentParts};
 use super::exchange::SPOILED;
 use super::group::{self, RankGroup};
 
-/// The rows that neighbours of the own rows are in, and who sends them to whom; empty in a program that runs
-/// alone.
+/// The halo: rows of other ranks that are neighbours of the own rows, with their senders and receivers; empty
+/// in a serial run.
 #[derive(Debug, Default)]
 pub struct Halo {
-    /// The cut that it belongs to.
+    /// The partition that it belongs to.
     cut: Option<Cut>,
-    /// Rows that others read of this rank, rank by rank, and where those of each rank end.
+    /// Own rows that other ranks read, rank by rank, and the bounds of each rank.
     send: Vec<u32>,
     send_cuts: Vec<usize>,
-    /// Rows that this rank reads of the others.
+    /// Rows of other ranks that this rank reads.
     receive: Vec<u32>,
     receive_cuts: Vec<usize>,
-    /// Rows of other ranks that this rank does not read, if they are made unusable.
+    /// Rows of other ranks that this rank does not read, if stale rows are invalidated.
     unread: Vec<u32>,
 }
 
 impl Halo {
-    /// The halo of a rank that reads `wanted` rows of these bodies, whose loops go in blocks of `block` rows;
-    /// its own rows may be among them. All ranks make theirs together.
+    /// The halo of a rank that reads `wanted` rows of these bodies, whose loops run in blocks of `block`
+    /// rows; its own rows may be among them. The call is collective.
     pub fn of(bodies: &[Range<usize>], block: usize, wanted: &[bool]) -> Self {
         group::with(|group| Self::in_group(group, bodies, block, wanted)).unwrap_or_default()
     }
@@ -44,7 +44,7 @@ impl Halo {
             }
             receive_cuts.push(receive.len());
         }
-        // How many rows each rank reads of each other one.
+        // Number of rows that each rank reads from each other one.
         let mut counts = vec![0_u64; size * size];
         for other in 0..size {
             counts[rank * size + other] = (receive_cuts[other + 1] - receive_cuts[other]) as u64;
@@ -64,7 +64,7 @@ impl Halo {
         Self { cut: Some(group.cut.clone()), send, send_cuts, receive, receive_cuts, unread }
     }
 
-    /// Whether it belongs to the present cut.
+    /// Whether it belongs to the current partition.
     pub fn is_current(&self) -> bool {
         group::with(|group| self.cut.as_ref() == Some(&group.cut)).unwrap_or(true)
     }
@@ -74,7 +74,7 @@ impl Halo {
         &self.receive
     }
 
-    /// Fills the rows of the halo with what their ranks have computed.
+    /// Fills the rows of the halo with the results of their ranks.
     pub fn fill<T: Pod>(&self, rows: &mut [T]) {
         self.fill_bytes(bytemuck::cast_slice_mut(rows), size_of::<T>());
     }
@@ -92,8 +92,8 @@ impl Halo {
             .for_each(|&row| bytes[row as usize * size..(row as usize + 1) * size].fill(SPOILED));
     }
 
-    /// Gives the rows of the halo what their ranks take out of `rows`: `take` gives it for a row, `put` gets
-    /// it for a row of the halo.
+    /// Transfers a value for each row of the halo: the owner reads it from `rows` by `take`, and this rank
+    /// stores it by `put`.
     pub fn fill_with<S: ?Sized, T: Pod>(
         &self,
         rows: &mut S,
@@ -132,7 +132,7 @@ impl Halo {
         });
     }
 
-    /// The rows of other ranks that are not in the halo, where these are made unusable.
+    /// The rows of other ranks that are not in the halo, if stale rows are invalidated.
     pub fn unread(&self) -> &[u32] {
         &self.unread
     }

@@ -1,12 +1,12 @@
-//! Values of which every rank has its own for the same places, joined place by place.
+//! Element-wise reduction of arrays over ranks, and concatenation.
 
 use bytemuck::Pod;
 
 use super::collective::{ReceivedParts, SentParts};
 use super::group;
 
-/// Joins the values that the ranks have for each place: every rank joins those of a part of the places, and
-/// gives it to all. `join` must come to the same bits in any order, as a least and a largest value do.
+/// Reduces the values of all ranks element by element: every rank reduces a part of the elements, and the
+/// results are gathered. `join` must be bitwise independent of the order, as a minimum or a maximum is.
 pub fn join<T: Pod>(values: &mut [T], join: impl Fn(T, T) -> T) {
     group::with(|group| {
         let (rank, size, count) = (group.ranks.rank(), group.ranks.size(), values.len());
@@ -27,7 +27,7 @@ pub fn join<T: Pod>(values: &mut [T], join: impl Fn(T, T) -> T) {
     });
 }
 
-/// The values of all ranks, those of each after those of the one before.
+/// Concatenates the values of all ranks, in the order of ranks.
 pub fn concatenate<T: Pod>(values: &mut Vec<T>) {
     let counts = group::gather(values.len() as u64);
     if counts.iter().all(|&count| count == 0) {
@@ -46,8 +46,8 @@ pub fn concatenate<T: Pod>(values: &mut Vec<T>) {
     });
 }
 
-/// The same of rows that are exchanged as that many numbers each, where there are several ranks; in the order
-/// of `key`.
+/// [`concatenate`] for rows that are exchanged as `WORDS` words each, sorted by `key`; it does nothing in a
+/// serial run.
 pub fn concatenate_rows<R, const WORDS: usize>(
     rows: &mut Vec<R>,
     to_words: impl Fn(&R) -> [u64; WORDS],

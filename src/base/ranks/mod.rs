@@ -1,13 +1,13 @@
-//! Ranks: processes that carry out one run together.
+//! Ranks: the processes of a parallel run.
 //!
 //! Every rank runs the same program on the same scene and holds all rows of all columns. Passes over pairs
-//! are divided: of each body a rank computes a range of whole blocks of rows ([`own_blocks`]) and exchanges
-//! the results with the others. Everything else is computed by every rank from equal values, in the order in
-//! which one rank would: the bits of a run do not depend on the number of ranks.
+//! are partitioned: a rank computes a range of whole blocks of rows of each body ([`own_blocks`]) and
+//! exchanges the results with the others. Every rank computes everything else redundantly, in the order of a
+//! serial run, so that results are bitwise independent of the number of ranks.
 //!
-//! The engine knows the trait [`Ranks`] alone; a program without several processes has none. As the thread
-//! pool of a parallel loop is that of the thread that begins it, the ranks of an exchange are those that the
-//! thread has entered ([`enter`]).
+//! The engine depends on the trait [`Ranks`] alone; a serial program has no implementation of it. The ranks
+//! of an exchange are those that the calling thread has entered ([`enter`]), just as the thread pool of a
+//! parallel loop is that of the calling thread.
 
 mod collective;
 mod cut;

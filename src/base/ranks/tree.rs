@@ -1,7 +1,7 @@
-//! Sums over the blocks of all ranks, along the tree along which one rank takes them.
+//! Sums over the blocks of all ranks, along the same tree as in a serial run.
 //!
-//! The tree halves the number of blocks. A rank takes the sums of the largest subtrees that lie in its range,
-//! at most two of each size; these are exchanged, and every rank completes the tree.
+//! The tree halves the number of blocks. A rank computes the sums of the largest subtrees within its range,
+//! at most two of each size. These are exchanged, and every rank completes the tree.
 
 use std::ops::Range;
 
@@ -23,7 +23,7 @@ pub(crate) fn maximal_subtrees(node: Range<usize>, own: &Range<usize>, f: &mut i
     maximal_subtrees(middle..node.end, own, f);
 }
 
-/// The sum over `count` blocks, of which `own` holds the sums of the largest subtrees of this rank.
+/// The sum over `count` blocks; `own` are the sums of the largest subtrees of this rank.
 pub(crate) fn complete<R: Pod + Default>(count: usize, own: &[R], add: &impl Fn(&mut R, &R)) -> R {
     if count == 0 || size_of::<R>() == 0 {
         return R::default();
@@ -47,7 +47,7 @@ pub(crate) fn complete<R: Pod + Default>(count: usize, own: &[R], add: &impl Fn(
     sum.unwrap_or_default()
 }
 
-/// The sum of a node of the tree; `next` is the place of the next sum of each rank.
+/// The sum of a node of the tree; `next` is the index of the next sum of each rank.
 fn sum_of<R: Pod>(
     node: Range<usize>,
     ranges: &[Range<usize>],
