@@ -1,4 +1,4 @@
-//! Boxes along the axes; rectangles in two dimensions.
+//! Axis-aligned boxes; rectangles in two dimensions.
 
 use glam::DVec3;
 
@@ -7,7 +7,7 @@ use super::region::{Aabb, Region};
 use super::surface::{Facing, Surface, SurfacePoint, behind_all};
 use crate::linalg::Sym3;
 
-/// A box along the axes; in two dimensions a rectangle.
+/// An axis-aligned box; in two dimensions a rectangle.
 pub(super) struct BoxRegion {
     pub corners: Aabb,
     pub axes: usize,
@@ -49,7 +49,7 @@ impl Surface for BoxRegion {
             let below = Facing { normal: -axis, distance: self.corners.min[k] - point[k] };
             Facing { normal: axis, distance: point[k] - self.corners.max[k] }.outermost(below)
         };
-        // One by one: a mapped array would be called.
+        // Written out, because a mapped array would not be inlined.
         let faces = [nearer_face(0), nearer_face(1), nearer_face(2)];
         behind_all(point, &faces[..self.axes])
     }

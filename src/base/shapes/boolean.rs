@@ -6,7 +6,7 @@ use super::moments::Moments;
 use super::region::{Aabb, Region};
 use super::surface::{Surface, SurfacePoint};
 
-/// Cells that the faces of boxes may make before the volume is integrated numerically.
+/// Maximum number of cells between the faces of boxes; beyond it the volume is integrated numerically.
 const MAX_BOX_CELLS: usize = 200_000;
 
 /// Union of the parts.
@@ -22,7 +22,7 @@ pub(super) struct Intersection {
 }
 
 impl<R: Region + ?Sized> Union<R> {
-    /// Whether the boxes about the parts, with `margin` \[m\] added, have nothing in common.
+    /// Whether the bounding boxes of the parts, each extended by `margin` \[m\], are disjoint.
     pub fn is_apart(&self, margin: f64) -> bool {
         let bounds: Vec<Aabb> = self.parts.iter().map(|part| part.bounds().grown(margin)).collect();
         (0..bounds.len()).all(|i| bounds[..i].iter().all(|other| other.is_apart(&bounds[i], self.axes)))
@@ -84,7 +84,7 @@ impl Region for Intersection {
     }
 }
 
-/// For parts that are apart only: the nearest point of one could be inside another.
+/// Only valid for disjoint parts: otherwise the nearest point of one could be inside another.
 impl<R: Surface + ?Sized> Surface for Union<R> {
     fn closest(&self, point: DVec3) -> SurfacePoint {
         let nearer =
@@ -103,8 +103,8 @@ impl<R: Surface + ?Sized> Surface for Union<R> {
     }
 }
 
-/// Volume of a region made of boxes along the axes: all their faces cut space into cells that are in or out
-/// as a whole.
+/// Volume of a region of axis-aligned boxes. Their faces divide space into cells that are entirely inside or
+/// outside.
 pub(super) fn volume_of_boxes<R: Region + ?Sized>(region: &R, axes: usize) -> Option<f64> {
     let mut faces = [Vec::new(), Vec::new(), Vec::new()];
     if !region.box_faces(&mut faces) {

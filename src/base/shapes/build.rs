@@ -1,4 +1,4 @@
-//! From a shape as written to checked geometry.
+//! Conversion of a shape of a scene to checked geometry.
 
 use std::path::Path;
 
@@ -17,8 +17,8 @@ impl Shape {
     /// shape, for error messages: `shape`, `within`.
     ///
     /// # Errors
-    /// A number that cannot be, a shape that does not exist in this dimension, a polygon that crosses itself,
-    /// a particle file.
+    /// An invalid number, a shape that does not exist in this dimension, a polygon that crosses itself, a
+    /// particle file.
     pub fn region(&self, dimension: Dimension, folder: &Path, path: &str) -> Checked<Box<dyn Region>> {
         let check = ShapeCheck { dimension, folder, path };
         let axes = dimension.count();
@@ -50,13 +50,13 @@ impl Shape {
         })
     }
 
-    /// The surface of this shape, for tools: all single shapes have one, moved, turned, equally scaled ones,
-    /// combinations of parts whose surfaces are apart. Files are looked for in `folder`; `path` is the field
-    /// that holds the shape, for error messages.
+    /// The surface of this shape, for tools. It exists for all single shapes, for translated, rotated and
+    /// uniformly scaled ones, and for combinations of parts whose surfaces are disjoint. Files are looked for
+    /// in `folder`; `path` is the field that holds the shape, for error messages.
     ///
     /// # Errors
-    /// As for [`region`](Self::region); a combination or stretched shape whose nearest points have no closed
-    /// form.
+    /// Those of [`region`](Self::region), and a combination or stretched shape whose nearest points have no
+    /// closed form.
     pub fn surface(&self, dimension: Dimension, folder: &Path, path: &str) -> Checked<Box<dyn Surface>> {
         let check = ShapeCheck { dimension, folder, path };
         let axes = dimension.count();

@@ -1,17 +1,17 @@
-//! The surface of a shape whose nearest points have no closed form, along the gradient of its distance.
+//! The surface of a shape whose nearest points have no closed form, by the gradient of its signed distance.
 //!
-//! Where the distance is less than the true one, so is that of the points. It serves where nothing touches
-//! the surface.
+//! Where the signed distance underestimates the true one, so does the distance of the nearest points. This
+//! surface is meant for bodies without contact.
 
 use glam::DVec3;
 
 use super::region::{Aabb, Region};
 use super::surface::{Surface, SurfacePoint};
 
-/// Length over which the gradient is taken, over the diagonal of the bounding box.
+/// Step of the finite difference of the gradient, over the diagonal of the bounding box.
 const DIFFERENCE: f64 = 1e-7;
 
-/// A region whose surface is known by its distance alone.
+/// A region whose surface is given by its signed distance alone.
 pub struct ByDistance(pub Box<dyn Region>);
 
 impl Region for ByDistance {

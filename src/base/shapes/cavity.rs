@@ -1,23 +1,21 @@
-//! The lattice of a wall. Where its cells miss the cavity that is cut out of it, they are adapted to end at
-//! the cavity.
+//! The lattice of a wall. Its cells are fitted to the faces of the cavity where they would not end there.
 //!
 //! A fluid in the cavity has its own lattice. Cells that divide only the outer box of the wall leave a gap of
-//! up to half a spacing at the cavity, or overlap the fluid. A gap of a sixteenth of a spacing makes the
-//! pressure on the floor of a tank 4 % too large, because the column of water sinks by that much and is
-//! compressed.
+//! up to half a spacing at the cavity, or overlap the fluid. A gap of a sixteenth of a spacing increases the
+//! pressure on the floor of a tank by 4 %, because the column of water sinks by the gap and is compressed.
 
 use super::region::Aabb;
 
 /// Round-off, over the spacing.
 const SAME: f64 = 1e-6;
-/// Part of a cell by which cells that divide the wall may miss the cavity: it makes 2 % of the pressure on a
-/// floor.
+/// Tolerated distance of cell faces from the face of the cavity, over the size of a cell; its error of the
+/// pressure on a floor is 2 %.
 const MISFIT: f64 = 0.03;
 
-/// The box that cells of a wall divide evenly, where the cavities that are cut out of it have these `faces`
-/// \[m\]: along each axis that between the outermost faces inside of the wall; from the one that there is on
-/// in whole spacings; and the wall, where there is none. Nothing, where cells that divide the wall end near
-/// the cavities anyway, or where no cells end at all of them.
+/// The box that the cells of a wall divide evenly, where its cavities have these `faces` \[m\]. Along each
+/// axis it extends between the outermost faces inside the wall; from a single face in whole spacings; and
+/// over the wall without a face. `None` where the cells of the wall end near the cavities already, or where
+/// no cells end at all cavities.
 pub(super) fn frame(wall: &Aabb, faces: &[Vec<f64>; 3], spacing: f64, axes: usize) -> Option<Aabb> {
     let mut frame = *wall;
     let mut fits = true;

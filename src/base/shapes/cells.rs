@@ -7,30 +7,31 @@ use super::error::FillErrorKind;
 use super::region::{Aabb, Region};
 use super::tiling::{CellBox, Tiling};
 
-/// Part of the particles that may sit in walls of one layer: tips and edges of round and sharp bodies have
-/// some.
+/// Maximum fraction of particles in sections of one layer; round and sharp bodies have some at tips and
+/// edges.
 const MAX_THIN_PART: f64 = 0.1;
 
-/// Where in its cell a particle sits.
+/// Position of a particle in its cell.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Packing {
-    /// In the centre: square or cubic lattice.
+    /// At the centre: square or cubic lattice.
     Centered,
-    /// Shifted from row to row and layer to layer: triangles, hexagonal close packing.
+    /// Shifted from row to row and layer to layer: triangular lattice, hexagonal close packing.
     Hexagonal,
 }
 
 impl Packing {
-    /// Sides of a cell that has the volume of a cube (square) of side `spacing` \[m\].
+    /// Sides \[m\] of a cell with the volume of a cube (square) of side `spacing` \[m\].
     pub fn cell(self, spacing: f64, axes: usize) -> DVec3 {
         let sides = match (self, axes) {
             (Self::Centered, _) => [1.0, 1.0, 1.0],
-            // Equilateral triangles of side a: rows sqrt(3)/2 a apart.
+            // Equilateral triangles of side a have a row distance of sqrt(3)/2 a.
             (Self::Hexagonal, 2) => {
                 let a = (2.0 / 3f64.sqrt()).sqrt();
                 [a, a * 0.75f64.sqrt(), 1.0]
             }
-            // Close packed spheres of diameter a: a^3 / sqrt(2) for each, layers sqrt(2/3) a apart.
+            // Close-packed spheres of diameter a have a volume of a^3 / sqrt(2) each and a layer distance of
+            // sqrt(2/3) a.
             (Self::Hexagonal, _) => {
                 let a = 2f64.sqrt().cbrt();
                 [a, a * 0.75f64.sqrt(), a * (2.0 / 3.0f64).sqrt()]
@@ -39,9 +40,9 @@ impl Packing {
         spacing * DVec3::from_array(sides)
     }
 
-    /// Position of the particle as parts of the sides of its cell. Rows alternate by half a cell along x; in
-    /// three dimensions layer B sits over the gaps of layer A, half a cell along x and a third along y away.
-    /// Placed so that the whole is centred in the box.
+    /// Position of the particle as fractions of the sides of its cell. Rows alternate by half a cell along x;
+    /// in three dimensions layer B lies over the gaps of layer A, offset by half a cell along x and a third
+    /// along y. The whole is centred in the box.
     fn part(self, tiling: &Tiling, index: [usize; 3]) -> DVec3 {
         if self == Self::Centered {
             return DVec3::splat(0.5);
@@ -55,11 +56,11 @@ impl Packing {
     }
 }
 
-/// The lattice points of `packing` in `region` with cells that divide `frame`, near ones after each other.
+/// The lattice points of `packing` in `region` with cells that divide `frame`, in a spatially coherent order.
 ///
 /// # Errors
-/// No point is inside, or the body is thinner than two particles: its frame is, or more than a tenth of the
-/// points are in walls of a single layer.
+/// No point is inside, or the body is thinner than two particles: either its frame is, or more than a tenth
+/// of the points are in sections of a single layer.
 pub(super) fn points(
     region: &dyn Region,
     frame: &Aabb,
@@ -114,8 +115,8 @@ pub(super) fn points(
     Ok(points)
 }
 
-/// Whether both neighbours of `point` along axis `k` are outside, and those of its two neighbours along
-/// another axis as well: one layer that goes on, not the tip of something round.
+/// Whether both neighbours of `point` along axis `k` are outside, and also those of its two neighbours along
+/// another axis. This is an extended single layer, not the tip of a round body.
 fn is_sheet(region: &dyn Region, point: DVec3, cell: DVec3, k: usize, axes: usize) -> bool {
     let step = |k: usize| cell[k] * DVec3::AXES[k];
     let single = |point: DVec3| !region.contains(point + step(k)) && !region.contains(point - step(k));

@@ -1,4 +1,4 @@
-//! The checks of one shape, and the geometry of the single ones.
+//! Checks of one shape, and the geometry of primitive shapes.
 
 use std::path::Path;
 
@@ -20,7 +20,7 @@ use crate::space::{Dimension, Vec3};
 
 pub(super) type Checked<T> = Result<T, FillError>;
 
-/// The checks of one shape, which know where it stands.
+/// The checks of one shape, with its path in the scene.
 pub(super) struct ShapeCheck<'a> {
     pub dimension: Dimension,
     pub folder: &'a Path,
@@ -28,7 +28,7 @@ pub(super) struct ShapeCheck<'a> {
 }
 
 impl ShapeCheck<'_> {
-    /// The geometry of a shape that is no combination or transform.
+    /// The geometry of a primitive shape.
     pub fn single(&self, shape: &Shape) -> Checked<Box<dyn Surface>> {
         let axes = self.dimension.count();
         Ok(match shape {
@@ -64,7 +64,7 @@ impl ShapeCheck<'_> {
         })
     }
 
-    /// The geometry of a shape that three dimensions alone have.
+    /// The geometry of a three-dimensional shape.
     fn in_space(&self, shape: &Shape) -> Checked<Box<dyn Surface>> {
         Ok(match shape {
             Shape::Cylinder { from, to, radius } => {
@@ -170,7 +170,7 @@ impl ShapeCheck<'_> {
         Polygon::new(points).or_else(|kind| self.error(field, kind))
     }
 
-    /// The parts of a combination, each made by `make`.
+    /// The parts of a combination, each constructed by `make`.
     pub fn parts<R: ?Sized>(
         &self,
         shapes: &[Shape],

@@ -1,4 +1,4 @@
-//! Concentric lattices: rings of sectors about an axis, shells of equal parts about a centre.
+//! Concentric lattices: rings of sectors about an axis, or shells of equal parts about a centre.
 
 use std::f64::consts::{PI, TAU};
 
@@ -8,11 +8,11 @@ use super::error::FillErrorKind;
 use super::rings::Rings;
 use super::site::Site;
 
-/// Particles of about the volume of a cube (square) of side `spacing`, each with the exact volume of its
+/// Particles with about the volume of a cube (square) of side `spacing`; each has the exact volume of its
 /// sector or part.
 ///
 /// # Errors
-/// A wall, radius or length of less than two particles.
+/// A wall thickness, radius or length of less than two particles.
 pub(super) fn sites(rings: &Rings, spacing: f64) -> Result<Vec<Site>, FillErrorKind> {
     match *rings {
         Rings::Plane { center, inner, outer } => {
@@ -57,7 +57,7 @@ fn layers(thickness: f64, spacing: f64, direction: &'static str) -> Result<usize
     Ok(layers as usize)
 }
 
-/// Number of rings or shells between two radii, of which the inner one is 0 where there is no hole.
+/// Number of rings or shells between two radii; the inner one is 0 without a hole.
 fn radial_layers(inner: f64, outer: f64, spacing: f64) -> Result<usize, FillErrorKind> {
     if inner > 0.0 {
         return layers(outer - inner, spacing, "the radius");
@@ -66,7 +66,7 @@ fn radial_layers(inner: f64, outer: f64, spacing: f64) -> Result<usize, FillErro
     Ok((outer / spacing).round().max(1.0) as usize)
 }
 
-/// Sectors of rings as (x, y, area): each particle at the centroid of its sector.
+/// Sectors of rings as (x, y, area), with each particle at the centroid of its sector.
 fn sectors(inner: f64, outer: f64, spacing: f64) -> Result<Vec<(f64, f64, f64)>, FillErrorKind> {
     let rings = radial_layers(inner, outer, spacing)?;
     let width = (outer - inner) / rings as f64;
@@ -85,9 +85,9 @@ fn sectors(inner: f64, outer: f64, spacing: f64) -> Result<Vec<(f64, f64, f64)>,
     Ok(sectors)
 }
 
-/// Points of a Fibonacci spiral on the sphere of the mean radius of a shell, each with an equal part of its
-/// volume. (Swinbank and Purser, Q. J. R. Meteorol. Soc. 132, 2006: z at the middles of zones of equal area,
-/// the longitude turned by the golden angle from point to point.)
+/// Points of a Fibonacci spiral on the sphere of the mean radius of a shell, with equal volumes. (Swinbank
+/// and Purser, Q. J. R. Meteorol. Soc. 132, 2006: z is at the middles of zones of equal area, and the
+/// longitude increases by the golden angle from point to point.)
 fn shell_parts(r0: f64, r1: f64, spacing: f64, shell: usize) -> impl Iterator<Item = (DVec3, f64)> {
     let volume = 4.0 / 3.0 * PI * (r1.powi(3) - r0.powi(3));
     let count = (volume / spacing.powi(3)).round().max(4.0);
@@ -95,7 +95,7 @@ fn shell_parts(r0: f64, r1: f64, spacing: f64, shell: usize) -> impl Iterator<It
     let golden = PI * (3.0 - 5f64.sqrt());
     (0..count as usize).map(move |n| {
         let z = 1.0 - (2.0 * n as f64 + 1.0) / count;
-        // Shells turn against each other, so that their poles do not line up in the same pattern.
+        // Shells are rotated relative to each other, so that the patterns at their poles are not aligned.
         let (sin, cos) = (golden * n as f64 + shell as f64).sin_cos();
         let around = (1.0 - z * z).sqrt();
         (radius * DVec3::new(around * cos, around * sin, z), volume / count)

@@ -10,7 +10,7 @@ use super::rings::Rings;
 use super::surface::{Facing, Surface, SurfacePoint, behind_all, circle};
 use crate::linalg::Sym3;
 
-/// A circular cylinder with flat ends; `inner` is 0 where it is solid.
+/// A circular cylinder with flat ends; `inner` is 0 for a solid cylinder.
 pub(super) struct Cylinder {
     pub from: DVec3,
     pub to: DVec3,

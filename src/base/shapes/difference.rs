@@ -1,4 +1,4 @@
-//! A region without another one.
+//! Difference of two regions.
 
 use glam::DVec3;
 
@@ -9,7 +9,7 @@ use super::region::{Aabb, Region};
 use super::rings::Rings;
 use super::surface::{Surface, SurfacePoint};
 
-/// The first part without the second.
+/// The first region without the second.
 pub(super) struct DifferenceRegion<R: ?Sized> {
     pub whole: Box<R>,
     pub hole: Box<R>,
@@ -17,7 +17,7 @@ pub(super) struct DifferenceRegion<R: ?Sized> {
 }
 
 impl<R: Region + ?Sized> DifferenceRegion<R> {
-    /// Whether all of the hole, with `margin` \[m\] about it, is known to be inside the whole.
+    /// Whether the hole, extended by `margin` \[m\], is certainly inside the whole.
     pub fn is_hollow(&self, margin: f64) -> bool {
         holds(self.whole.as_ref(), &self.hole.bounds().grown(margin), self.axes)
     }
@@ -41,7 +41,7 @@ impl<R: Region + ?Sized> Region for DifferenceRegion<R> {
         self.through_opening(point, whole, hole).or_else(edge).unwrap_or(distance)
     }
 
-    /// Those of the whole, up to a hole that takes all of one of its ends away.
+    /// The bounds of the whole, reduced where a hole removes an entire end of it.
     fn bounds(&self) -> Aabb {
         let mut bounds = self.whole.bounds();
         for axis in 0..self.axes {
@@ -89,8 +89,8 @@ impl<R: Region + ?Sized> Region for DifferenceRegion<R> {
     }
 }
 
-/// For a hole that is all inside only: otherwise the nearest point of either surface could be one of no
-/// boundary.
+/// Only valid for a hole entirely inside the whole: otherwise the nearest point of either surface might not
+/// be on the boundary of the difference.
 impl<R: Surface + ?Sized> Surface for DifferenceRegion<R> {
     fn closest(&self, point: DVec3) -> SurfacePoint {
         let (outer, inner) = (self.whole.closest(point), self.hole.closest(point));
@@ -100,7 +100,8 @@ impl<R: Surface + ?Sized> Surface for DifferenceRegion<R> {
         SurfacePoint { point: inner.point, normal: -inner.normal, signed_distance: -inner.signed_distance }
     }
 
-    /// Those of the hole are notches: what touches them has touched its faces before.
+    /// The edges of the whole alone: those of the hole are concave, and a body touches the adjacent faces
+    /// first.
     fn edges(&self, piece: f64) -> Vec<[DVec3; 2]> {
         self.whole.edges(piece)
     }
@@ -110,8 +111,8 @@ impl<R: Surface + ?Sized> Surface for DifferenceRegion<R> {
     }
 }
 
-/// Whether `region` is known to hold all of `part`: it is a single box that does, or a ball about `part` is
-/// inside.
+/// Whether `region` certainly contains `part`: either it is a single box that does, or the circumscribed ball
+/// of `part` is inside.
 fn holds<R: Region + ?Sized>(region: &R, part: &Aabb, axes: usize) -> bool {
     let mut faces = [Vec::new(), Vec::new(), Vec::new()];
     if region.box_faces(&mut faces) && faces[0].len() == 2 {

@@ -1,4 +1,4 @@
-//! Errors of a shape, a spacing or a particle file.
+//! Errors in a shape, a spacing or a particle file.
 
 use glam::DVec3;
 use thiserror::Error;
@@ -6,11 +6,11 @@ use thiserror::Error;
 use super::mesh_fault::MeshFault;
 use crate::notation::{digits, number};
 
-/// Why a shape cannot be filled with particles or used as a selection.
+/// Error of filling a shape with particles or using it as a selection.
 #[derive(Debug, Error)]
 #[error("{path}: {kind}{}", .kind.help().map_or(String::new(), |help| format!("; {help}")))]
 pub struct FillError {
-    /// The field that is wrong, from the body on: `spacing`, `shape.max`, `shape[0].radius` (an argument
+    /// Path of the wrong field, relative to the body: `spacing`, `shape.max`, `shape[0].radius` (an argument
     /// without a name), `shape[0][2]` (an element of a list).
     pub path: String,
     /// The kind of error.
@@ -22,7 +22,7 @@ impl FillError {
         Self { path: path.into(), kind }
     }
 
-    /// The error, with the name of the field where the requirement is on one number.
+    /// The error, preceded by the name of the field for a requirement on one number.
     pub fn message(&self) -> String {
         match self.kind {
             FillErrorKind::NotPositive(_) => {
@@ -41,7 +41,7 @@ pub enum FillErrorKind {
     /// Infinite or not a number.
     #[error("expected a finite number, found {0}")]
     NotFinite(f64),
-    /// Zero or negative where only a positive number makes sense.
+    /// Zero or negative where a positive number is required.
     #[error("must be greater than 0, found {}", number(*.0))]
     NotPositive(f64),
     /// Two ends in the wrong order, or equal.
@@ -54,7 +54,7 @@ pub enum FillErrorKind {
         /// Upper end \[m\].
         max: f64,
     },
-    /// A hole as wide as the body, or wider.
+    /// A hole at least as wide as the body.
     #[error("the inner radius {inner} m must be less than the outer radius {outer} m")]
     Radii {
         /// Radius of the hole \[m\].
@@ -68,12 +68,12 @@ pub enum FillErrorKind {
     /// A z coordinate in two dimensions.
     #[error("z must be left out or 0 in two dimensions, found {0}")]
     NotFlat(f64),
-    /// A shape of three dimensions in a scene of two, or the other way round.
+    /// A three-dimensional shape in a two-dimensional scene, or the reverse.
     #[error("`{shape}` is a shape of {needs} dimensions only")]
     WrongDimension {
         /// Name of the shape.
         shape: &'static str,
-        /// The dimensions it needs, `two` or `three`.
+        /// The required dimensions, `two` or `three`.
         needs: &'static str,
         /// The replacement.
         instead: &'static str,
@@ -81,7 +81,7 @@ pub enum FillErrorKind {
     /// A polygon with too few corners.
     #[error("a polygon needs at least 3 points, found {0}")]
     FewPoints(usize),
-    /// A polygon with an edge of no length.
+    /// A polygon with an edge of zero length.
     #[error("points {0} and {1} of the polygon (counted from 0) are the same")]
     EqualPoints(usize, usize),
     /// A polygon that crosses or touches itself.
@@ -89,19 +89,19 @@ pub enum FillErrorKind {
         "the polygon crosses or touches itself: the edges that start at points {0} and {1} (counted from 0) meet"
     )]
     Crossing(usize, usize),
-    /// A combination of nothing.
+    /// A combination without parts.
     #[error("needs at least one shape")]
     NoShapes,
-    /// A normal of no length.
+    /// A normal of zero length.
     #[error("the normal must not be a zero vector")]
     NoNormal,
-    /// A shape without end where a body is to be filled.
+    /// An unbounded shape for a body of particles.
     #[error("the shape is unbounded and cannot be filled with particles")]
     Unbounded,
     /// A shape whose nearest surface points have no closed form.
     #[error("a tool needs a surface with known nearest points: {0}")]
     NoSurface(&'static str),
-    /// A rotation axis of no length.
+    /// A rotation axis of zero length.
     #[error("the axis must not be a zero vector")]
     NoAxis,
     /// A rotation out of the plane.
@@ -113,18 +113,18 @@ pub enum FillErrorKind {
     /// A lattice that does not fit the shape.
     #[error("a concentric lattice does not fit this shape")]
     NotConcentric,
-    /// A relaxation that would never end.
+    /// A relaxation with too many iterations.
     #[error("expected at most {limit} iterations, found {found}")]
     Iterations {
         /// The value in the scene.
         found: u32,
-        /// The most that is allowed.
+        /// The allowed maximum.
         limit: u32,
     },
     /// The shape is empty.
     #[error("the shape is empty: no particle of spacing {0} m lies in it")]
     NoParticle(f64),
-    /// A wall that two particles cannot resolve.
+    /// A section thinner than two particles.
     #[error("the body must be at least 2 spacings thick along {direction}, found {}", number(.thickness / .spacing))]
     Thin {
         /// Name of the direction: `x`, `y`, `z`, `the axis` or `the radius`.
@@ -134,7 +134,7 @@ pub enum FillErrorKind {
         /// Spacing of the particles \[m\].
         spacing: f64,
     },
-    /// More particles than the caller has memory for.
+    /// More particles than the limit of the caller.
     #[error("the body needs {}, more than the {} that fit into memory", particles(*.estimate), digits(*.limit as u64))]
     TooMany {
         /// Estimated number of particles.
@@ -145,42 +145,42 @@ pub enum FillErrorKind {
     /// A particle file or mesh that cannot be opened.
     #[error("cannot read `{file}`: {source}")]
     File {
-        /// The file as looked for.
+        /// Path of the file.
         file: String,
         /// Error of the system.
         source: std::io::Error,
     },
-    /// A mesh that is no solid.
+    /// A mesh that does not bound a solid.
     #[error("`{file}`: {fault}")]
     Mesh {
-        /// The file as looked for.
+        /// Path of the file.
         file: String,
         /// The fault.
         fault: MeshFault,
     },
-    /// A mesh too small or too large for the spacing: most likely in another unit.
+    /// A mesh too small or too large for the spacing, most likely because of its unit.
     #[error(
         "the mesh measures {:.3e} x {:.3e} x {:.3e} m, which is {:.3e} spacings of {spacing} m in the longest direction",
         .extent.x, .extent.y, .extent.z, .extent.max_element() / .spacing
     )]
     MeshSize {
-        /// Sides of the box about the mesh \[m\].
+        /// Sides of the bounding box of the mesh \[m\].
         extent: DVec3,
         /// Spacing of the particles \[m\].
         spacing: f64,
     },
-    /// Particles of a file that contradict each other or the spacing.
+    /// Particles of a file that are inconsistent with each other or with the spacing.
     #[error("`{file}`: {message}")]
     Particles {
-        /// The file as looked for.
+        /// Path of the file.
         file: String,
         /// The requirement and what was found.
         message: String,
     },
-    /// A particle file with wrong content.
+    /// A particle file with invalid content.
     #[error("`{file}`, line {line}: {message}")]
     Csv {
-        /// The file as looked for.
+        /// Path of the file.
         file: String,
         /// Line, counted from 1.
         line: u64,
@@ -225,7 +225,7 @@ impl FillErrorKind {
     }
 }
 
-/// An estimate of a number of particles.
+/// An estimated number of particles.
 fn particles(estimate: f64) -> String {
     match estimate {
         _ if estimate < 1e9 => format!("about {} particles", digits(estimate as u64)),
@@ -234,10 +234,10 @@ fn particles(estimate: f64) -> String {
     }
 }
 
-/// Three digits, never above the value.
+/// The value rounded down to three digits.
 fn rounded_down(value: f64) -> f64 {
     let shown = |value: f64| format!("{value:.2e}").parse().unwrap_or(value);
-    // Round-off of the thickness itself must not turn 0.05 into 0.0499.
+    // Round-off of the thickness must not change 0.05 to 0.0499.
     let nearest: f64 = shown(value);
     if nearest <= value * (1.0 + 1e-9) { nearest } else { shown(value * 0.995) }
 }

@@ -1,24 +1,24 @@
-//! Removes vertices where triangles of a flat part are needlessly small: cut edges of long fans of triangles
-//! leave slivers.
+//! Removes vertices where triangles of a flat part are needlessly small, such as the slivers left by the
+//! bisection of long triangle fans.
 
 use glam::DVec3;
 
 use super::Facets;
 
-/// An edge is short below this share of the longest one that is wanted.
+/// An edge is short below this fraction of the maximum edge length.
 const SHORT: f64 = 0.5;
 /// Square of the sine of the angle between normals up to which triangles lie in one plane; files have seven
 /// digits.
 const FLAT: f64 = 1e-10;
-/// Twice the area over the square of the longest edge from which a triangle is good; half of it for that of a
-/// square.
+/// Minimum quality of a good triangle: twice its area over the square of its longest edge, which is 0.5 for
+/// half a square.
 const GOOD: f64 = 0.4;
-/// Rounds in which vertices are taken out: each leaves one alone beside one that has gone.
+/// Maximum number of passes of vertex removal; a pass skips the neighbours of removed vertices.
 const ROUNDS: usize = 20;
 
-/// Takes out vertices in flat parts that are closer to another one than half of `longest` \[m\], as long as
-/// no edge becomes longer than that and no triangle turns over or becomes thinner than the thinnest there
-/// was. The surface stays where it is.
+/// Removes vertices of flat parts that are closer to another one than half of `longest` \[m\]. No edge may
+/// become longer than `longest`, and no triangle may be inverted or become thinner than the thinnest before.
+/// The geometry of the surface is unchanged.
 pub(super) fn coarsened(mut mesh: Facets, longest: f64) -> Facets {
     for _ in 0..ROUNDS {
         let around = triangles_at_vertices(&mesh);
@@ -55,7 +55,7 @@ fn triangles_at_vertices(mesh: &Facets) -> Vec<Vec<u32>> {
     around
 }
 
-/// The vertices that share an edge with one.
+/// The vertices that share an edge with the given one.
 fn ring(mesh: &Facets, star: &[u32], vertex: u32) -> Vec<u32> {
     let corners = star.iter().flat_map(|&triangle| mesh.corners[triangle as usize]);
     let mut ring: Vec<u32> = corners.filter(|&corner| corner != vertex).collect();
@@ -64,10 +64,10 @@ fn ring(mesh: &Facets, star: &[u32], vertex: u32) -> Vec<u32> {
     ring
 }
 
-/// The vertex that one of a flat part is moved onto, if it is to go.
+/// The target vertex of the edge collapse that removes a vertex of a flat part, if it is to be removed.
 fn target(mesh: &Facets, around: &[Vec<u32>], vertex: u32, ring: &[u32], longest: f64) -> Option<u32> {
     let star = &around[vertex as usize];
-    // A closed fan of triangles has as many vertices around it.
+    // A closed fan has as many vertices around it as triangles.
     if star.len() != ring.len() || star.len() < 3 {
         return None;
     }

@@ -1,10 +1,10 @@
-//! Facets on the surface of any region, including combinations whose parts intersect or go over into each
-//! other: dual contouring (Ju, Losasso, Schaefer and Warren, ACM Trans. Graph. 21, 2002).
+//! Facets on the surface of any region, including combinations whose parts intersect or join smoothly, by
+//! dual contouring (Ju, Losasso, Schaefer and Warren, ACM Trans. Graph. 21, 2002).
 //!
-//! Every grid cell that the surface crosses contains a vertex, at the point nearest to the tangent planes at
-//! the intersections of the surface with the edges of the cell. This holds on smooth surfaces, on sharp edges
-//! and in corners. Every grid edge that the surface cuts joins the vertices of the four cells around it, in
-//! two dimensions those of the two cells beside it.
+//! Every grid cell that the surface crosses contains a vertex, at the least-squares point of the tangent
+//! planes at the intersections of the surface with the edges of the cell. This is accurate on smooth
+//! surfaces, on sharp edges and in corners. Every grid edge that the surface cuts joins the vertices of the
+//! four cells around it, in two dimensions those of the two cells beside it.
 
 use std::collections::BTreeMap;
 
@@ -16,25 +16,25 @@ use crate::linalg::{Eigen, Sym3};
 use crate::shapes::region::{Aabb, Region};
 use crate::shapes::tiling::Tiling;
 
-/// Halvings that find where an edge of the grid is cut.
+/// Bisections that locate the intersection of the surface with a grid edge.
 const HALVINGS: usize = 34;
-/// Step of the differences that give the normal, over the length of a cell.
+/// Step of the finite differences of the normal, over the length of a cell.
 const STEP: f64 = 1e-5;
-/// Distance over the length of a cell within which a point is on the surface of a part.
+/// Distance below which a point is on the surface of a part, over the length of a cell.
 const ON: f64 = 1e-9;
-/// Eigenvalue over the largest one, below which tangent planes do not say where the vertex is in that
-/// direction.
+/// Ratio of an eigenvalue to the largest one, below which the tangent planes do not determine the vertex
+/// along its eigenvector.
 const FLAT: f64 = 0.05;
 
-/// The surface of `region` in facets of about `length`; none if it has no end, or if two pieces of an outline
-/// go through one cell.
+/// The surface of `region` in facets of about `length`; `None` if it is unbounded, or if two pieces of an
+/// outline cross one cell.
 pub(super) fn of_region(region: &dyn Region, axes: usize, length: f64) -> Option<Facets> {
     let bounds = region.bounds();
     if !bounds.is_bounded() {
         return None;
     }
-    // Planes of the grid stand half a cell away from the sides of the box, which are often faces of the
-    // shape.
+    // Grid planes are half a cell away from the sides of the bounding box, because these are often faces of
+    // the shape.
     let cell = bounds.extent() / (bounds.extent() / length).round().max(DVec3::ONE);
     let frame = Aabb { min: bounds.min - 0.5 * cell, max: bounds.max + 0.5 * cell };
     let grid = Tiling::new(&frame, &frame, cell, axes);
@@ -69,8 +69,8 @@ struct Net<'a> {
 }
 
 impl Net<'_> {
-    /// Whether the surface leaves the region along the edge from the corner of a cell that is farthest along
-    /// `across` on along `axis`, or enters it.
+    /// Orientation of the surface on the cell edge along `axis` from the corner with the largest `across`
+    /// coordinates: whether the edge leaves the region or enters it.
     fn leaves(&self, cell: [usize; 3], across: &[usize], axis: usize) -> Option<bool> {
         let corner = beyond(cell, across);
         let ends = [corner, beyond(corner, &[axis])].map(|node| is_inside(self.region, self.grid, node));
@@ -88,7 +88,7 @@ impl Net<'_> {
         })
     }
 
-    /// The lines through the edges at the upper corner of a cell, outside to their right.
+    /// The segments through the edges at the upper corner of a cell, with the outside to their right.
     fn lines(&self, cell: [usize; 3]) -> impl Iterator<Item = [u32; 3]> {
         (0..2).filter_map(move |axis| {
             let across = 1 - axis;
@@ -99,7 +99,7 @@ impl Net<'_> {
     }
 }
 
-/// The cell or node that is one farther along these axes.
+/// The next cell or node along the given axes.
 fn beyond(mut index: [usize; 3], axes: &[usize]) -> [usize; 3] {
     axes.iter().for_each(|&axis| index[axis] += 1);
     index
@@ -109,7 +109,8 @@ fn is_inside(region: &dyn Region, grid: &Tiling, node: [usize; 3]) -> bool {
     holds(region, grid.point(node, DVec3::ZERO), smallest(grid))
 }
 
-/// Whether a point is inside. Where two parts meet face to face neither has it: what is around it tells.
+/// Whether a point is inside. Points on a common face of two parts are strictly inside neither, so
+/// surrounding points decide.
 fn holds(region: &dyn Region, x: DVec3, cell: f64) -> bool {
     let distance = region.distance(x);
     if distance.abs() > ON * cell {
@@ -119,12 +120,12 @@ fn holds(region: &dyn Region, x: DVec3, cell: f64) -> bool {
     around.into_iter().all(|axis| region.distance(x + STEP * cell * axis) <= ON * cell)
 }
 
-/// The least side of a cell \[m\].
+/// The shortest side of a cell \[m\].
 fn smallest(grid: &Tiling) -> f64 {
     (0..grid.axes).map(|axis| grid.cell[axis]).fold(f64::INFINITY, f64::min)
 }
 
-/// The vertex of a cell, if the surface cuts its edges.
+/// The vertex of a cell whose edges the surface intersects.
 fn vertex(region: &dyn Region, grid: &Tiling, cell: [usize; 3]) -> Option<DVec3> {
     let node = |k: usize| [0, 1, 2].map(|axis| cell[axis] + (k >> axis & 1));
     let inside: [bool; 8] = std::array::from_fn(|k| k < 1 << grid.axes && is_inside(region, grid, node(k)));
@@ -155,7 +156,7 @@ fn vertex(region: &dyn Region, grid: &Tiling, cell: [usize; 3]) -> Option<DVec3>
     Some((middle + shift).clamp(low, high))
 }
 
-/// Where the surface cuts an edge, from its end inside to that outside, and the normal there.
+/// Intersection of the surface with an edge from an inner to an outer node, and the normal there.
 fn cut(region: &dyn Region, [mut inside, mut outside]: [DVec3; 2], cell: f64) -> (DVec3, DVec3) {
     for _ in 0..HALVINGS {
         let middle = 0.5 * (inside + outside);
@@ -172,7 +173,7 @@ fn cut(region: &dyn Region, [mut inside, mut outside]: [DVec3; 2], cell: f64) ->
     (at, normal.normalize_or_zero())
 }
 
-/// Two triangles of four vertices, parted along the diagonal that is nearer to the surface.
+/// Two triangles of four vertices, divided along the diagonal that is nearer to the surface.
 fn halves(region: &dyn Region, points: &[DVec3], [a, b, c, d]: [u32; 4]) -> [[u32; 3]; 2] {
     let away = |p: u32, q: u32| region.distance(0.5 * (points[p as usize] + points[q as usize])).abs();
     let (first, second) = (away(a, c), away(b, d));

@@ -1,5 +1,5 @@
-//! The outline of a combination of shapes: those pieces of the outlines of its parts that have the inside of
-//! the combination on one side and the outside on the other.
+//! The outline of a combination of shapes: the pieces of the outlines of its parts that separate the inside
+//! of the combination from the outside.
 
 use std::collections::BTreeMap;
 
@@ -8,15 +8,15 @@ use glam::DVec3;
 use super::{Facets, directed_area};
 use crate::shapes::region::Region;
 
-/// How far beside a line the inside is looked for, over the length of its segments: farther than they are
-/// from the curves that they stand for.
+/// Offset of the inside test from a segment, over the length of the segments; it exceeds the distance of a
+/// segment from its curve.
 const BESIDE: f64 = 0.1;
-/// Segments shorter than this share of the usual length are left out; ends that are so near are one point.
+/// Fraction of the usual length below which segments are discarded and end points are merged.
 const SHORTEST: f64 = 0.2;
-/// Halvings that find where a segment is cut.
+/// Bisections that locate the intersection with a segment.
 const HALVINGS: usize = 40;
 
-/// Which side of a line is inside.
+/// The inner side of a line.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum InnerSide {
     Left,
@@ -24,7 +24,7 @@ enum InnerSide {
     No,
 }
 
-/// The outline of `region` from those of its parts; none if it does not close.
+/// The outline of `region` from those of its parts; `None` if it is not closed.
 pub(super) fn boundary(parts: &Facets, region: &dyn Region, length: f64) -> Option<Facets> {
     let mut lines: Vec<[DVec3; 2]> = Vec::new();
     for facet in 0..parts.corners.len() {
@@ -45,7 +45,7 @@ pub(super) fn boundary(parts: &Facets, region: &dyn Region, length: f64) -> Opti
     welded(&lines, SHORTEST * length)
 }
 
-/// The pieces of a segment, which is cut once at most.
+/// The pieces of a segment, which has one intersection at most.
 fn pieces([a, b]: [DVec3; 2], region: &dyn Region, length: f64) -> Vec<([DVec3; 2], InnerSide)> {
     let normal = directed_area(2, &[a, b, b]).normalize_or_zero() * (BESIDE * length);
     let kept = |s: f64| {
@@ -73,7 +73,7 @@ fn pieces([a, b]: [DVec3; 2], region: &dyn Region, length: f64) -> Vec<([DVec3; 
     vec![([a, cut], first), ([cut, b], last)]
 }
 
-/// Lines that begin where others end, as closed outlines.
+/// Joins lines at common end points to closed outlines.
 fn welded(lines: &[[DVec3; 2]], tolerance: f64) -> Option<Facets> {
     let mut points: Vec<DVec3> = Vec::new();
     let mut cells: BTreeMap<(i64, i64), Vec<u32>> = BTreeMap::new();

@@ -1,4 +1,4 @@
-//! A closed surface of flat facets, and that of a shape.
+//! A closed surface of flat facets, and the surface of a shape in facets.
 
 use std::path::Path;
 
@@ -8,25 +8,25 @@ use super::super::shape::Shape;
 use super::{grids, outline};
 use crate::space::Dimension;
 
-/// A closed surface in flat facets.
+/// A closed surface of flat facets.
 #[derive(Clone, Debug, Default)]
 pub struct Facets {
     /// 2 or 3.
     pub axes: usize,
     /// Vertices, on the surface \[m\].
     pub points: Vec<DVec3>,
-    /// Vertices of every facet, of which segments use the first two; the outward normal is to the right of a
-    /// segment, and that of triangles that go round counter-clockwise.
+    /// Vertices of every facet; segments use the first two. The outward normal is to the right of a segment,
+    /// and triangles are counter-clockwise seen from outside.
     pub corners: Vec<[u32; 3]>,
 }
 
 impl Facets {
-    /// The ends of a facet at these places.
+    /// The vertices of a facet for the given positions.
     pub(super) fn ends(&self, facet: usize) -> [DVec3; 3] {
         self.corners[facet].map(|k| self.points[k as usize])
     }
 
-    /// Middle of a facet \[m\].
+    /// Centroid of a facet \[m\].
     pub fn center(&self, facet: usize) -> DVec3 {
         let [a, b, c] = self.ends(facet);
         if self.axes == 2 { 0.5 * (a + b) } else { (a + b + c) / 3.0 }
@@ -39,7 +39,7 @@ impl Facets {
         (directed.normalize_or_zero(), measure)
     }
 
-    /// Whether segments join in closed lines that do not meet: each point is the end of one and the start of
+    /// Whether the segments form disjoint closed lines: each point is the end of one segment and the start of
     /// another.
     pub(super) fn is_closed_line(&self) -> bool {
         let mut ends = vec![[0; 2]; self.points.len()];
@@ -50,7 +50,7 @@ impl Facets {
         ends.iter().all(|of| *of == [1, 1])
     }
 
-    /// Puts another surface beside this one, with reversed orientation if it bounds a hole.
+    /// Appends another surface, with reversed orientation if it bounds a hole.
     pub(super) fn join(&mut self, other: &Self, is_hole: bool) {
         let first = self.points.len() as u32;
         self.points.extend_from_slice(&other.points);
@@ -70,15 +70,15 @@ impl Facets {
     }
 }
 
-/// Outward normal times length (area) of a facet with these ends \[m; m2\].
+/// Outward normal times length (area) of a facet with the given vertices \[m; m2\].
 pub fn directed_area(axes: usize, [a, b, c]: &[DVec3; 3]) -> DVec3 {
     let ab = b - a;
     if axes == 2 { DVec3::new(ab.y, -ab.x, 0.0) } else { 0.5 * ab.cross(c - a) }
 }
 
 impl Shape {
-    /// The surface of a checked shape in facets of about `length` \[m\]; none where it is not known: of
-    /// particle files, and of meshes that are much finer.
+    /// The surface of a checked shape in facets of about `length` \[m\]; `None` for particle files and for
+    /// meshes that are much finer.
     pub fn facets(&self, dimension: Dimension, folder: &Path, length: f64) -> Option<Facets> {
         match dimension {
             Dimension::Two => outline::of_shape(self, folder, length),

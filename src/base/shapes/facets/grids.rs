@@ -12,10 +12,11 @@ use crate::shapes::shape::Shape;
 use crate::shapes::transform::turned;
 use crate::space::Dimension;
 
-/// Triangles of a mesh over those of a new one, above which it is too fine to be carried by particles.
+/// Ratio of the number of triangles of a mesh to that of its remeshed surface, above which it is too fine to
+/// be carried by particles.
 const FINEST: f64 = 16.0;
 
-/// The surface of a shape: exact where its parts are apart or hollow, else contoured.
+/// The surface of a shape: exact where its parts are disjoint or nested, else by dual contouring.
 pub(super) fn of_shape(shape: &Shape, folder: &Path, length: f64) -> Option<Facets> {
     if let Some(facets) = exact(shape, folder, length) {
         return Some(facets);
@@ -25,7 +26,7 @@ pub(super) fn of_shape(shape: &Shape, folder: &Path, length: f64) -> Option<Face
     contour::of_region(&*region, 3, length)
 }
 
-/// The surface of a single shape, and of combinations whose parts are apart or hollow.
+/// The surface of a primitive shape, and of combinations whose parts are disjoint or nested.
 fn exact(shape: &Shape, folder: &Path, length: f64) -> Option<Facets> {
     let check = ShapeCheck { dimension: Dimension::Three, folder, path: "shape" };
     Some(match shape {
@@ -83,7 +84,8 @@ fn exact(shape: &Shape, folder: &Path, length: f64) -> Option<Facets> {
     })
 }
 
-/// The triangles of a mesh in parts that are no longer than that, m, and not much smaller where it is flat.
+/// The triangles of a mesh, refined to edges no longer than the given length, m, and coarsened where it is
+/// flat.
 fn triangles(mesh: Facets, longest: f64) -> Facets {
     coarse::coarsened(refine::refined(mesh, longest), longest)
 }
@@ -94,7 +96,7 @@ fn shell(center: DVec3, inner: f64, outer: f64, length: f64) -> Facets {
     shell
 }
 
-/// The six faces of a box, each a grid, whose vertices along common edges are the same.
+/// The six faces of a box, each a grid, with shared vertices along common edges.
 fn block(min: DVec3, max: DVec3, length: f64) -> Facets {
     let counts = ((max - min) / length).round().max(DVec3::ONE).to_array().map(|count| count as usize);
     let mut points = Vec::new();
@@ -116,7 +118,7 @@ fn block(min: DVec3, max: DVec3, length: f64) -> Facets {
                     (node[axis], node[u], node[v]) = (side, i, j);
                     number(node)
                 });
-                // Diagonals alternate, so that no direction is preferred.
+                // Alternating diagonals prefer no direction.
                 let halves = if (i + j) % 2 == 0 { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] };
                 corners.extend(halves.map(|[p, q, r]| if side == 0 { [p, r, q] } else { [p, q, r] }));
             }

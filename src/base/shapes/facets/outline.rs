@@ -12,7 +12,7 @@ use crate::shapes::shape::Shape;
 use crate::shapes::transform::turned;
 use crate::space::Dimension;
 
-/// Fewest segments of a circle.
+/// Minimum number of segments of a circle.
 const FEWEST: usize = 12;
 
 /// The outline of a shape.
@@ -43,12 +43,11 @@ pub(super) fn of_shape(shape: &Shape, folder: &Path, length: f64) -> Option<Face
     if is_single(shape) {
         return Some(leaves);
     }
-    // Where curves go over into each other, as at rounded corners, it is not clear from points beside them
-    // which is the outline.
+    // Where curves join smoothly, as at rounded corners, points beside them do not determine the outline.
     cut::boundary(&leaves, &*region, length).or_else(|| contour::of_region(&*region, 2, length))
 }
 
-/// Whether a shape is no combination.
+/// Whether a shape is not a combination.
 fn is_single(shape: &Shape) -> bool {
     match shape {
         Shape::Union(_) | Shape::Difference(..) | Shape::Intersection(_) => false,
@@ -59,7 +58,7 @@ fn is_single(shape: &Shape) -> bool {
     }
 }
 
-/// The outlines of all parts of a shape, each as if it were alone.
+/// The complete outlines of all parts of a shape.
 fn leaves(shape: &Shape, within: &Aabb, length: f64) -> Option<Facets> {
     let check = ShapeCheck { dimension: Dimension::Two, folder: Path::new(""), path: "shape" };
     let all = |shapes: &mut dyn Iterator<Item = &Shape>| {
@@ -123,7 +122,7 @@ fn twice_area(corners: &[DVec3]) -> f64 {
     corners.iter().zip(next).map(|(a, b)| (*a - corners[0]).cross(*b - corners[0]).z).sum()
 }
 
-/// A closed polygon that goes round counter-clockwise.
+/// A closed counter-clockwise polygon.
 fn polygon(corners: &[DVec3], length: f64) -> Facets {
     let mut closed = corners.to_vec();
     closed.push(corners[0]);
@@ -147,7 +146,7 @@ fn segments(points: &[DVec3], length: f64) -> Facets {
     Facets { axes: 2, points: fine, corners }
 }
 
-/// A circle: its corners stand so far outside that the area is that of the circle.
+/// A circle, as a polygon of equal area with corners slightly outside.
 fn circle(center: DVec3, radius: f64, length: f64) -> Facets {
     let count = ((TAU * radius / length).round() as usize).max(FEWEST);
     let angle = TAU / count as f64;

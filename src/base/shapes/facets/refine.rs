@@ -1,4 +1,4 @@
-//! Refines triangles until all edges are short enough; prisms over polygons.
+//! Refinement of triangles to a maximum edge length; prisms over polygons.
 
 use std::collections::BTreeMap;
 
@@ -6,11 +6,10 @@ use glam::DVec2;
 
 use super::Facets;
 
-/// Rounds of cutting in two: edges become a thousand times shorter.
+/// Maximum number of bisection passes, which shorten edges a thousandfold.
 const ROUNDS: usize = 10;
 
-/// Cuts all edges longer than `longest` \[m\] in two, until there are none. Neighbouring triangles stay
-/// neighbours.
+/// Bisects all edges longer than `longest` \[m\], until there are none. The mesh stays conforming.
 pub(super) fn refined(mut mesh: Facets, longest: f64) -> Facets {
     for _ in 0..ROUNDS {
         let mut middles: BTreeMap<[u32; 2], u32> = BTreeMap::new();
@@ -36,19 +35,19 @@ pub(super) fn refined(mut mesh: Facets, longest: f64) -> Facets {
     mesh
 }
 
-/// A triangle, cut where its edges have middles.
+/// Subdivision of a triangle at the midpoints of its bisected edges.
 fn parts([a, b, c]: [u32; 3], middle: &impl Fn(u32, u32) -> Option<u32>) -> Vec<[u32; 3]> {
     match (middle(a, b), middle(b, c), middle(c, a)) {
         (None, None, None) => vec![[a, b, c]],
         (Some(p), Some(q), Some(r)) => vec![[a, p, r], [p, b, q], [r, q, c], [p, q, r]],
         (Some(p), None, None) => vec![[a, p, c], [p, b, c]],
         (Some(p), Some(q), None) => vec![[a, p, c], [p, q, c], [p, b, q]],
-        // One of the other edges, or two: turned until it is one of the cases above.
+        // One or two of the other edges: the triangle is rotated to one of the cases above.
         _ => parts([b, c, a], middle),
     }
 }
 
-/// The prism over a polygon; none if the polygon cannot be cut into triangles.
+/// The prism over a polygon; `None` if the polygon cannot be triangulated.
 pub(super) fn prism(polygon: &[(f64, f64)], from: f64, to: f64) -> Option<Facets> {
     let mut corners: Vec<DVec2> = polygon.iter().map(|&(x, y)| DVec2::new(x, y)).collect();
     let n = corners.len();
@@ -71,7 +70,7 @@ pub(super) fn prism(polygon: &[(f64, f64)], from: f64, to: f64) -> Option<Facets
     Some(Facets { axes: 3, points, corners: triangles })
 }
 
-/// Triangles of a polygon that goes round counter-clockwise: ears are cut off one by one.
+/// Triangulation of a counter-clockwise polygon by ear clipping.
 fn ears(corners: &[DVec2]) -> Option<Vec<[u32; 3]>> {
     let mut left: Vec<u32> = (0..corners.len() as u32).collect();
     let mut triangles = Vec::new();

@@ -7,11 +7,11 @@ use glam::DVec3;
 
 use super::Facets;
 
-/// Fewest vertices around a circle.
+/// Minimum number of vertices around a circle.
 const FEWEST: usize = 12;
 
-/// A cube with faces of n x n cells at equal angles, blown up to a sphere whose triangles hold the volume of
-/// the ball.
+/// A cube with faces of n x n cells at equal angles, projected onto a sphere whose triangles enclose the
+/// volume of the ball.
 pub(super) fn sphere(center: DVec3, radius: f64, length: f64) -> Facets {
     let n = ((FRAC_PI_2 * radius / length).round() as usize).max(3);
     let (mut points, mut corners) = (Vec::new(), Vec::new());
@@ -47,8 +47,7 @@ pub(super) fn sphere(center: DVec3, radius: f64, length: f64) -> Facets {
     unit.moved(|x| center + radius * x)
 }
 
-/// A cylinder, or a tube with a bore; corners of circles stand so far outside that areas are those of
-/// circles.
+/// A cylinder, or a tube with a bore; its circles are polygons of equal area, with corners slightly outside.
 pub(super) fn cylinder(from: DVec3, to: DVec3, inner: f64, outer: f64, length: f64) -> Facets {
     let axis = to - from;
     let (u, v) = axis.normalize().any_orthonormal_pair();
@@ -97,15 +96,15 @@ pub(super) fn cylinder(from: DVec3, to: DVec3, inner: f64, outer: f64, length: f
     mesh
 }
 
-/// Joins two rings of any counts, which begin at the same angle, by triangles; the second may be a single
-/// point. The triangles look outward where the second ring is above the first one of a cylinder, or inside of
-/// it at its upper end; else they are to be `turned`.
+/// Joins two rings of any numbers of vertices, which begin at the same angle, by triangles; the second may be
+/// a single point. The triangles face outward where the second ring of a cylinder is above the first one, or
+/// inside of it at its upper end; in other cases they must be `turned`.
 fn stitch(corners: &mut Vec<[u32; 3]>, first: &[u32], second: &[u32], turned: bool) {
     let (n, m) = (first.len(), if second.len() > 1 { second.len() } else { 0 });
     let at = |ring: &[u32], k: usize| ring[k % ring.len()];
     let (mut i, mut j) = (0, 0);
     while i < n || j < m {
-        // The ring goes on whose next vertex has the smaller angle.
+        // The ring whose next vertex has the smaller angle advances.
         let next_of_first = j == m || (i < n && (i + 1) * m <= (j + 1) * n);
         let triangle = if next_of_first {
             i += 1;

@@ -22,7 +22,7 @@ fn volume(mesh: &Facets) -> f64 {
     (0..mesh.corners.len()).map(part).sum()
 }
 
-/// Every end (edge) belongs to two facets, which go through it in opposite directions.
+/// Every end point (edge) belongs to two facets, with opposite orientations.
 fn is_closed(mesh: &Facets) -> bool {
     let mut ends: BTreeMap<[u32; 2], i32> = BTreeMap::new();
     for &[a, b, c] in &mesh.corners {
@@ -111,8 +111,8 @@ fn outlines_that_go_over_into_each_other_close_around_their_area() {
     );
 }
 
-/// The planes of the grid of 5 cells stand at the odd tenths of the length, the faces at which the boxes meet
-/// on one of them.
+/// The grid planes of 5 cells are at the odd tenths of the length, and the common face of the boxes is on one
+/// of them.
 #[test]
 fn parts_that_meet_on_a_plane_of_the_grid_are_one() {
     let boxes = "Union([Box(min: (0, 0, 0), max: (0.125, 0.2, 0.2)), Box(min: (0.125, 0, 0), max: (0.25, 0.2, 0.2))])";
@@ -218,7 +218,7 @@ fn fans_of_long_triangles_leave_no_slivers() {
             at_end += 1;
         }
     }
-    // A grid of squares in halves has two.
+    // A grid of halved squares has two.
     let each = f64::from(at_end) * 1e-6 / area;
     assert!(at_end > 0 && each < 4.0, "{each} triangles for every square of the length");
 }
