@@ -17,7 +17,7 @@ use super::transform::turned;
 use super::{concentric, fitted, morton_order, points, quadrature, relaxed};
 use crate::space::Dimension;
 
-/// Steps of relaxation after which particles hardly move any more.
+/// Maximum number of relaxation steps; particles hardly move after them.
 const MAX_ITERATIONS: u32 = 1000;
 
 /// Options for filling a shape.
@@ -25,30 +25,30 @@ const MAX_ITERATIONS: u32 = 1000;
 pub struct Filling<'a> {
     /// Arrangement of the particles.
     pub lattice: Lattice,
-    /// Distance of the particles, m.
+    /// Particle spacing, m.
     pub spacing: f64,
     /// Dimension of the scene.
     pub dimension: Dimension,
-    /// Where particle files and meshes are looked for.
+    /// Folder of particle files and meshes.
     pub folder: &'a Path,
-    /// Largest number of particles.
+    /// Maximum number of particles.
     pub limit: usize,
-    /// Whether the shape is the wall of a flow: where a box is cut out of it, cells end at the cavity, and
-    /// volumes are those of cells.
+    /// Whether the shape is the wall of a flow. Its cells end at the faces of a box-shaped cavity, and its
+    /// volumes are those of the cells.
     pub is_wall: bool,
 }
 
 /// The particles that fill `shape`, in the order of a Morton curve.
 ///
-/// The volumes add up to that of the shape: the closed form, or for combinations without one a numerical
-/// value good to 0.1 %. A regular or hexagonal lattice divides the box about the shape evenly (that about the
-/// first shape of a combination): a side that is no multiple of the spacing gets the nearest number of
-/// particles. Translations and rotations take the lattice with them.
+/// The volumes add up to that of the shape, in closed form or, for combinations without one, by quadrature to
+/// 0.1 %. A regular or hexagonal lattice divides the bounding box of the shape evenly (for a combination that
+/// of its first shape): a side that is not a multiple of the spacing gets the nearest number of particles.
+/// The lattice is translated and rotated with the shape.
 ///
 /// # Errors
 /// The spacing is not positive; the shape is not valid in this dimension, is empty, is thinner than two
-/// particles, or does not fit the lattice; it takes more particles than the limit; the particle file is
-/// missing or wrong.
+/// particles, or does not fit the lattice; it needs more particles than the limit; the particle file is
+/// missing or invalid.
 pub fn fill(shape: &Shape, filling: Filling<'_>) -> Result<Vec<Site>, FillError> {
     let spacing = filling.spacing;
     if !spacing.is_finite() {
@@ -60,7 +60,7 @@ pub fn fill(shape: &Shape, filling: Filling<'_>) -> Result<Vec<Site>, FillError>
     let filling = Filling { limit: filling.limit.min(u32::MAX as usize), ..filling };
     let sites = filling.sites(shape, "shape")?;
     let positions: Vec<DVec3> = sites.iter().map(|site| site.position).collect();
-    // A turn or a shift of what is very far away may leave the range of numbers.
+    // A rotation or translation of very distant points may overflow.
     if let Some(lost) = positions.iter().find(|position| !position.is_finite()) {
         let lost = lost.to_array().into_iter().find(|x| !x.is_finite()).unwrap_or(f64::NAN);
         return Err(FillError::new("shape", FillErrorKind::NotFinite(lost)));
@@ -100,7 +100,7 @@ impl Filling<'_> {
         }
     }
 
-    /// The particles of the inner shape of a transform, moved with it.
+    /// The transformed particles of the inner shape of a transform.
     fn moved(
         &self,
         shape: &Shape,
@@ -113,7 +113,7 @@ impl Filling<'_> {
         Ok(sites.into_iter().map(moved).collect())
     }
 
-    /// A mesh that is too small or too large for the spacing is in another unit, more often than not.
+    /// A mesh that is too small or too large for the spacing is usually in another unit.
     fn check_size(&self, mesh: &dyn Surface, check: &ShapeCheck) -> Result<(), FillError> {
         let spacing = self.spacing;
         let extent = mesh.bounds().extent();
@@ -138,7 +138,7 @@ impl Filling<'_> {
         self.of_content(content).map_err(at)
     }
 
-    /// The region with its volume, which must not be too large for the spacing.
+    /// The region with its volume, checked against the maximum number of particles.
     fn measured<'r>(&self, region: &'r dyn Region, path: &str) -> Result<Content<'r>, FillError> {
         let (axes, spacing) = (self.dimension.count(), self.spacing);
         let within_limit = |volume: f64, factor: f64| {
@@ -148,7 +148,8 @@ impl Filling<'_> {
             }
             Err(FillError::new("spacing", FillErrorKind::TooMany { estimate, limit: self.limit }))
         };
-        // The exact volume may take long where the spacing is far too small: a rough estimate comes first.
+        // The exact volume may be expensive where the spacing is far too small, so a rough estimate is
+        // checked first.
         within_limit(quadrature::volume(region, f64::INFINITY, axes), 2.0)?;
         let volume = quadrature::volume(region, spacing, axes);
         within_limit(volume, 1.0)?;
@@ -192,8 +193,7 @@ impl Filling<'_> {
     }
 }
 
-/// Whether a scaled shape is filled before it is scaled: particle files always, others if the factors are
-/// equal.
+/// Whether a shape is filled before it is scaled: particle files always, others for uniform scaling.
 fn is_uniform(shape: &Shape, by: DVec3, dimension: Dimension) -> bool {
     matches!(shape, Shape::Points { .. }) || (by.x == by.y && (dimension == Dimension::Two || by.y == by.z))
 }

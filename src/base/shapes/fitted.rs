@@ -1,5 +1,5 @@
 //! Body-fitted packings: a regular lattice inside, and layers that follow the boundary near it, made uniform
-//! by Lloyd's method with the outermost layer held at half a spacing from the boundary.
+//! by Lloyd's method with the outermost layer fixed at half a spacing from the boundary.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -10,16 +10,16 @@ use super::site::{Content, Site};
 use super::tiling::Tiling;
 use super::voronoi;
 
-/// Depth of the particles that move, and of the cells that are measured for it, in spacings.
+/// Depth of the moving particles, and of the particles whose Voronoi cells are computed, in spacings.
 const MOVING: f64 = 3.5;
 const MEASURED: f64 = 6.0;
-/// Depth up to which particles belong to the outermost layer: at the start, and then, in spacings.
+/// Maximum depth of the outermost layer, initially and in later steps, in spacings.
 const FIRST_LAYER: [f64; 2] = [1.0, 0.75];
-/// Samples along each side of a cell, in two and three dimensions: for a step of Lloyd's method and for the
+/// Samples along each side of a cell in two and three dimensions, for a step of Lloyd's method and for the
 /// volumes.
 const STEP_SAMPLES: [usize; 2] = [6, 3];
 const VOLUME_SAMPLES: [usize; 2] = [12, 6];
-/// Step of the differences that give the direction to the boundary, in spacings.
+/// Step of the finite differences of the direction to the boundary, in spacings.
 const STEP: f64 = 1e-5;
 
 /// The particles near the boundary of a region.
@@ -43,9 +43,9 @@ impl Region for Band<'_> {
     }
 }
 
-/// The lattice points in `region` with those near its boundary moved: after `iterations` steps of Lloyd's
-/// method they have about even cells, and the outermost ones are half a spacing from the boundary. Inside,
-/// particles have the volume of a cell of the lattice; all together have `volume`.
+/// The lattice points in `region`, with those near its boundary moved by `iterations` steps of Lloyd's method
+/// to nearly uniform cells. The outermost ones are half a spacing from the boundary. Particles inside have
+/// the volume of a lattice cell; the sum of all volumes is `volume`.
 pub(super) fn sites(content: Content<'_>, mut points: Vec<DVec3>, iterations: u32) -> Vec<Site> {
     let Content { region, volume, spacing, axes } = content;
     let frame = region.frame();
@@ -68,7 +68,7 @@ pub(super) fn sites(content: Content<'_>, mut points: Vec<DVec3>, iterations: u3
         let moving = points.par_iter_mut().zip(cells).zip(&moves).filter(|(_, moves)| **moves);
         moving.for_each(|((point, cell), _)| {
             let centroid = cell.first / cell.volume;
-            // The centroid of a cell that is bent about a hole or a notch may be outside.
+            // The centroid of a non-convex cell at a hole or a notch may be outside.
             if cell.volume > 0.0 && region.contains(centroid) {
                 *point = centroid;
             }
@@ -88,12 +88,12 @@ pub(super) fn sites(content: Content<'_>, mut points: Vec<DVec3>, iterations: u3
     sites.filter(|site| site.volume > 0.0).collect()
 }
 
-/// The place half a spacing from the boundary beside a point near it.
+/// The position half a spacing from the boundary, for a point near it.
 fn in_first_layer(region: &dyn Region, point: DVec3, spacing: f64, axes: usize) -> DVec3 {
     let step = STEP * spacing;
     let mut place = point;
-    // Distances of combinations are not exact away from the boundary: the second step mends what the first
-    // one leaves.
+    // Distances of combinations are not exact away from the boundary; the second step corrects the remainder
+    // of the first.
     for _ in 0..2 {
         let slope = |k: usize| {
             let ahead = region.distance(place + step * DVec3::AXES[k]);
@@ -102,6 +102,6 @@ fn in_first_layer(region: &dyn Region, point: DVec3, spacing: f64, axes: usize) 
         let outward = (0..axes).map(|k| slope(k) * DVec3::AXES[k]).sum::<DVec3>().normalize_or_zero();
         place -= (region.distance(place) + 0.5 * spacing) * outward;
     }
-    // Where the body is thinner than that, the point stays.
+    // The point stays where the body is too thin.
     if region.distance(place) < -0.25 * spacing { place } else { point }
 }

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::region::{Aabb, Region};
 use super::surface::{Facing, Surface, SurfacePoint};
 
-/// All that lies behind the plane through `point` with the unit normal `normal`.
+/// The half-space behind the plane through `point` with the unit normal `normal`.
 pub(super) struct HalfSpace {
     pub point: DVec3,
     pub normal: DVec3,

@@ -5,14 +5,15 @@ use thiserror::Error;
 
 use crate::notation::{count, place};
 
-/// Why a file is no mesh, or its mesh no solid. Places are in the coordinates of the scene \[m\].
+/// Why a file is not a mesh, or its mesh does not bound a solid. Positions are in the coordinates of the
+/// scene \[m\].
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum MeshFault {
-    /// The name ends neither in `.stl` nor in `.obj`.
+    /// The file name ends neither in `.stl` nor in `.obj`.
     #[error("the name ends neither in `.stl` nor in `.obj`")]
     Extension,
-    /// A text that is no STL, or a binary file of the wrong length.
+    /// A text that is not STL, or a binary file of the wrong length.
     #[error(
         "not an STL file: expected the word `solid` or a binary file of {expected} bytes, found {size} bytes"
     )]
@@ -33,7 +34,7 @@ pub enum MeshFault {
     /// A coordinate that is infinite or not a number.
     #[error("a coordinate of triangle {0} (counted from 0) is not a finite number")]
     NotFinite(usize),
-    /// A file without a triangle that has three different corners.
+    /// A file without a non-degenerate triangle.
     #[error("the file has no triangle")]
     NoTriangle,
     /// Edges with a triangle on one side only.
@@ -52,7 +53,7 @@ pub enum MeshFault {
         /// Middle of the first one \[m\].
         at: DVec3,
     },
-    /// Neighbouring triangles of which one faces outward and the other inward.
+    /// Neighbouring triangles with inconsistent orientation.
     #[error("the triangles on the two sides face opposite ways at {}, the first at {} m", count(*edges as u64, "edge"), place(*at))]
     Orientation {
         /// Number of such edges.
@@ -60,15 +61,15 @@ pub enum MeshFault {
         /// Middle of the first one \[m\].
         at: DVec3,
     },
-    /// Triangles that go through each other.
+    /// Triangles that intersect.
     #[error("the mesh intersects itself: {pairs} pairs of triangles cross, the first at {} m", place(*at))]
     Crossing {
-        /// Number of pairs of triangles that cross.
+        /// Number of intersecting pairs of triangles.
         pairs: usize,
-        /// Middle of the first triangle that is crossed \[m\].
+        /// Centroid of the first intersected triangle \[m\].
         at: DVec3,
     },
-    /// A closed mesh that holds nothing.
+    /// A closed mesh of zero volume.
     #[error("the mesh encloses no volume")]
     NoVolume,
 }

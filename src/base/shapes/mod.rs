@@ -1,4 +1,4 @@
-//! Shapes and how particles fill them: what a scene writes under `shape`, `lattice` and `spacing`.
+//! Shapes and their filling with particles: the fields `shape`, `lattice` and `spacing` of a scene.
 
 mod block;
 mod boolean;

@@ -17,7 +17,7 @@ pub struct Moments {
 }
 
 impl Moments {
-    /// From corners of triangles or tetrahedra that share the corner `origin` and have these signed volumes;
+    /// Moments from triangles or tetrahedra of the given signed volumes that share the corner `origin`;
     /// `corners` are relative to it. `axes` is 2 for triangles, 3 for tetrahedra.
     ///
     /// Over a simplex in d dimensions with a corner at the origin, x x^T integrates to V / ((d + 1)(d + 2))
@@ -45,19 +45,19 @@ impl Moments {
         Self { volume, center: origin + center, second }
     }
 
-    /// Of the shape moved.
+    /// Moments of the translated shape.
     pub(super) fn translated(self, by: DVec3) -> Self {
         Self { center: self.center + by, ..self }
     }
 
-    /// Of the shape turned about a point.
+    /// Moments of the shape rotated about a point.
     pub(super) fn rotated(self, turn: DQuat, about: DVec3) -> Self {
         let rotation = glam::DMat3::from_quat(turn);
         let second = Sym3::symmetric_part(rotation * self.second.to_matrix() * rotation.transpose());
         Self { center: about + turn * (self.center - about), second, ..self }
     }
 
-    /// Of the shape stretched equally along its `axes` from a point.
+    /// Moments of the shape scaled uniformly along its `axes` from a point.
     pub(super) fn scaled(self, by: f64, axes: usize, about: DVec3) -> Self {
         let volume = by.powi(axes as i32);
         Self {
@@ -67,7 +67,7 @@ impl Moments {
         }
     }
 
-    /// Of two shapes that are apart; with `sign` -1, of the first without the second that it holds.
+    /// Moments of two disjoint shapes; with `sign` -1, of the first without the second, which it contains.
     pub(super) fn joined(self, other: Self, sign: f64) -> Self {
         let volume = self.volume + sign * other.volume;
         let center = (self.volume * self.center + sign * other.volume * other.center) / volume;

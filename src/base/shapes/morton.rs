@@ -5,10 +5,10 @@ use rayon::prelude::*;
 
 /// Bits of a key for each axis.
 const BITS: u32 = 21;
-/// Cells on either side of the place that they are counted from.
+/// Cells on either side of the origin of the grid.
 const HALF: f64 = (1 << (BITS - 1)) as f64;
 
-/// Order along a Morton (Z-order) curve, with memory that is kept.
+/// Order along a Morton (Z-order) curve, with persistent buffers.
 #[derive(Debug, Default)]
 pub struct MortonSort {
     keys: Vec<(u64, u32)>,
@@ -16,9 +16,9 @@ pub struct MortonSort {
 }
 
 impl MortonSort {
-    /// The order of `points` along the curve through cells of side `cell` \[m\] that are counted from the
-    /// place `around` \[m\]: element n is the index of the point that comes n-th. Points of one cell keep
-    /// their order. Where 2^20 cells on either side do not reach, their side is doubled until they do.
+    /// The order of `points` along the curve through a grid of cells of side `cell` \[m\] with its origin at
+    /// `around` \[m\]: element n is the index of the n-th point. The order of points within a cell is
+    /// preserved. Where 2^20 cells on either side do not suffice, their side is doubled until they do.
     pub fn order(&mut self, points: &[DVec3], around: DVec3, mut cell: f64) -> &[u32] {
         let farthest = points
             .iter()
@@ -26,8 +26,8 @@ impl MortonSort {
         while farthest / cell >= HALF - 1.0 {
             cell *= 2.0;
         }
-        // Points of a lattice that starts at `around` lie half a cell away from the walls of the cells, where
-        // round-off cannot move them across.
+        // Points of a lattice that starts at `around` are half a cell away from the faces of the cells, so
+        // that round-off cannot move them across.
         let index = |x: f64| (x / cell + (HALF + 0.5)) as u64;
         let key = |point: DVec3| {
             let from = point - around;
@@ -42,7 +42,7 @@ impl MortonSort {
     }
 }
 
-/// [`MortonSort::order`] for once, with cells that are counted from the corner of the points.
+/// [`MortonSort::order`] without persistent buffers, with the origin at the minimum corner of the points.
 pub fn morton_order(points: &[DVec3], cell: f64) -> Vec<u32> {
     let first = points.first().copied().unwrap_or_default();
     let corner = points.iter().fold(first, |corner, &point| corner.min(point));
@@ -51,7 +51,7 @@ pub fn morton_order(points: &[DVec3], cell: f64) -> Vec<u32> {
     sort.order
 }
 
-/// The 21 lowest bits, three places apart.
+/// The 21 lowest bits, spread to every third bit.
 fn spread(bits: u64) -> u64 {
     let mut x = bits & 0x1f_ffff;
     x = (x | x << 32) & 0x001f_0000_0000_ffff;

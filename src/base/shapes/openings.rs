@@ -1,7 +1,7 @@
-//! Distances through the openings of holes: where the face of a hole is one of the body it is cut out of, as
-//! at the ends of a pipe or where a second hole begins, nothing is between the two, but what is beside the
-//! opening, on either side, is near. From the edge of a hole the distance is that from the edge, not from the
-//! nearer one of its two faces.
+//! Distances through the openings of holes. Where a face of a hole coincides with one of the body it is cut
+//! out of, as at the ends of a pipe or where a second hole begins, there is no material between the two: the
+//! nearest material is beside the opening, on either side. At the edge of a hole the distance is that from
+//! the edge, not from the nearer one of its two faces.
 
 use glam::DVec3;
 
@@ -9,19 +9,19 @@ use super::difference::DifferenceRegion;
 use super::region::Region;
 use super::shape::Shape;
 
-/// Distance of two faces up to which they are one, over the extent of the hole.
+/// Maximum distance of coincident faces, over the extent of the hole.
 const COMMON: f64 = 1e-9;
 
-/// Least cosine of the angle between the normals of two faces that meet in an edge: opposite ones are those
-/// of a thin part.
+/// Minimum cosine of the angle between the normals of two faces that meet in an edge; opposite normals are
+/// those of a thin part.
 const SHARP: f64 = -0.9;
 
-/// Step away from a face that is seen as on its other side, over the extent of the hole.
+/// Step across a face that is certainly on its other side, over the extent of the hole.
 const BESIDE: f64 = 1e-6;
 
 impl<R: Region + ?Sized> DifferenceRegion<R> {
-    /// Distance of a `point` from what is left of the whole, if the nearest face is an opening; `of_whole`
-    /// and `of_hole` are its distances from the whole and from the hole \[m\].
+    /// Distance of a `point` from the remaining material of the whole, if the nearest face is an opening;
+    /// `of_whole` and `of_hole` are its distances from the whole and from the hole \[m\].
     pub(super) fn through_opening(&self, point: DVec3, of_whole: f64, of_hole: f64) -> Option<f64> {
         let extent = self.hole.bounds().extent().max_element();
         if (of_whole - of_hole).abs() > COMMON * extent {
@@ -46,7 +46,7 @@ impl<R: Region + ?Sized> DifferenceRegion<R> {
     }
 
     /// Distance of a `point` outside of the whole by `of_whole` and inside of the hole by `in_hole` \[m\],
-    /// where the nearest is the edge between the two faces; none where it is one of the faces.
+    /// where the edge between the two faces is nearest; `None` where one of the faces is.
     pub(super) fn distance_to_edge(&self, point: DVec3, of_whole: f64, in_hole: f64) -> Option<f64> {
         let step = BESIDE * self.hole.bounds().extent().max_element();
         let faces = [
@@ -60,14 +60,15 @@ impl<R: Region + ?Sized> DifferenceRegion<R> {
     }
 }
 
-/// Direction in which a distance grows.
+/// Direction of the gradient of a distance.
 fn normal(distance: impl Fn(DVec3) -> f64, point: DVec3, step: f64, axes: usize) -> DVec3 {
     let slope = |axis: DVec3| distance(point + step * axis) - distance(point - step * axis);
     DVec3::AXES[..axes].iter().map(|&axis| slope(axis) * axis).sum::<DVec3>().normalize_or_zero()
 }
 
-/// Distance from what is beside the way from `start` along `out`, away from an opening `behind` it: that at
-/// which the distance no longer grows as that from the opening \[m\].
+/// Distance \[m\] from the material beside the ray from `start` along `out`, away from an opening at the
+/// distance `behind`: the distance function along the ray where it no longer increases like the distance from
+/// the opening.
 fn sideways(distance: impl Fn(DVec3) -> f64, start: DVec3, out: DVec3, behind: f64, reach: f64) -> f64 {
     let (mut step, mut farthest) = (f64::max(behind, 1e-3 * reach), f64::MIN_POSITIVE);
     loop {
@@ -81,8 +82,8 @@ fn sideways(distance: impl Fn(DVec3) -> f64, start: DVec3, out: DVec3, behind: f
 }
 
 impl Shape {
-    /// The same set of points, every hole that is a union cut out part by part: where the parts touch, they
-    /// open into each other.
+    /// The same set of points, with the parts of every hole that is a union cut out one by one: parts that
+    /// touch open into each other.
     #[must_use]
     pub fn cut_part_by_part(&self) -> Self {
         let inner = |shape: &Self| Box::new(shape.cut_part_by_part());
@@ -107,7 +108,7 @@ impl Shape {
         }
     }
 
-    /// Shapes that together are this one.
+    /// Shapes whose union is this one.
     fn parts(&self) -> Vec<Self> {
         let of = |shape: &Self, moved: &dyn Fn(Box<Self>) -> Self| -> Vec<Self> {
             shape.parts().into_iter().map(|part| moved(Box::new(part))).collect()

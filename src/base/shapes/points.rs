@@ -12,8 +12,7 @@ use crate::notation::{number, place};
 use crate::space::Dimension;
 
 /// Reads the columns x, y, z (three dimensions), volume of the file, in any order. A unit in brackets may
-/// follow a name (`x[m]`); empty lines and those that begin with `#` are passed over, other columns are
-/// ignored.
+/// follow a name (`x[m]`); empty lines, those that begin with `#` and other columns are ignored.
 ///
 /// # Errors
 /// The file cannot be read or has no particle, a column is missing, a value is not a finite number, a volume
@@ -31,7 +30,7 @@ pub(super) fn read(
     let text = files::read(&full, files::LARGEST_GEOMETRY)
         .and_then(|bytes| String::from_utf8(bytes).map_err(std::io::Error::other))
         .map_err(|source| error(FillErrorKind::File { file: shown.clone(), source }))?;
-    // Excel begins UTF-8 with a mark.
+    // Excel writes a byte-order mark in UTF-8.
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
     let wrong = |line, message| error(FillErrorKind::Csv { file: shown.clone(), line, message });
     let mut lines = text
@@ -72,7 +71,7 @@ pub(super) fn read(
     Ok(sites)
 }
 
-/// The columns of a file, and where those stand that are read.
+/// The columns of a file, and the indices of those that are read.
 struct Columns<'a> {
     names: &'a [&'a str],
     x: usize,
@@ -82,7 +81,7 @@ struct Columns<'a> {
 }
 
 impl Columns<'_> {
-    /// The particle of a line; the error says what is wrong with it.
+    /// The particle of a line, or its error message.
     fn site(&self, row: &[&str], dimension: Dimension) -> Result<Site, String> {
         let Self { names, x, y, z, volume } = *self;
         if row.len() != names.len() {
@@ -106,15 +105,15 @@ impl Columns<'_> {
     }
 }
 
-/// Factor between the volume of a particle and that of its spacing which is most likely a slip of units.
+/// Ratio between the volume of a particle and that of its spacing beyond which a wrong unit is likely.
 const VOLUME_RATIO: f64 = 100.0;
-/// Distance in spacings below which two particles are one that was written twice.
+/// Distance in spacings below which two particles are duplicates.
 const TWICE: f64 = 0.01;
 
-/// Looks whether places and volumes make sense together with the spacing \[m\] of the body.
+/// Checks the consistency of positions and volumes with the spacing \[m\] of the body.
 ///
 /// # Errors
-/// Two particles are at one place; the volumes are those of another spacing.
+/// Two particles coincide, or the volumes are those of another spacing.
 pub(super) fn check(
     sites: &[Site],
     spacing: f64,
@@ -140,7 +139,7 @@ pub(super) fn check(
     let mut cells: HashMap<[i64; 3], usize> = HashMap::with_capacity(sites.len());
     for (k, site) in sites.iter().enumerate() {
         let [x, y, z] = cell(site.position);
-        // Cells of the farthest places are the last ones there are.
+        // Cell indices of the most distant positions saturate.
         let beside = |k: i64| (-1..=1).map(move |by| k.saturating_add(by));
         let around = beside(x).flat_map(|x| beside(y).flat_map(move |y| beside(z).map(move |z| [x, y, z])));
         let near = |other: &usize| sites[*other].position.distance(site.position) < TWICE * spacing;
@@ -157,7 +156,8 @@ pub(super) fn check(
     Ok(())
 }
 
-/// The columns of a header; of what is no header nothing is shown, it may be secret.
+/// The columns of a header for an error message. A line that is not a header is not shown, because it may be
+/// confidential.
 fn columns(names: &[&str]) -> String {
     let is_sign = |sign: char| sign.is_alphanumeric() || " _-.".contains(sign);
     match names.iter().all(|name| name.len() < 40 && name.chars().all(is_sign)) {
@@ -166,7 +166,7 @@ fn columns(names: &[&str]) -> String {
     }
 }
 
-/// The values of a line, without spaces and quotes about them.
+/// The values of a line, without surrounding spaces and quotes.
 fn values(line: &str) -> impl Iterator<Item = &str> {
     line.split(',').map(|value| value.trim().trim_matches('"').trim())
 }

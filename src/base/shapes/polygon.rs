@@ -8,7 +8,7 @@ use super::region::{Aabb, Region, capped};
 use super::surface::{Facing, Surface, SurfacePoint, behind_all};
 use crate::linalg::Sym3;
 
-/// A polygon in x-y that does not cross itself.
+/// A simple polygon in the x-y plane.
 pub(super) struct Polygon {
     corners: Vec<DVec2>,
 }
@@ -21,7 +21,7 @@ pub(super) struct Extrusion {
 }
 
 impl Polygon {
-    /// Checks that the edges have a length and meet only at the corners that they share.
+    /// Checks that all edges have a positive length and meet only at shared corners.
     pub fn new(points: &[(f64, f64)]) -> Result<Self, FillErrorKind> {
         let corners: Vec<DVec2> = points.iter().map(|&(x, y)| DVec2::new(x, y)).collect();
         let n = corners.len();
@@ -69,9 +69,9 @@ impl Polygon {
             || (b_side == 0.0 && within(c, d, b))
     }
 
-    /// Twice the area, positive if the corners go round counter-clockwise.
+    /// Twice the signed area, positive for counter-clockwise corners.
     fn twice_area(&self) -> f64 {
-        // Relative to a corner: far from the origin the products would cancel.
+        // Coordinates are relative to a corner, because far from the origin the products would cancel.
         let origin = self.corners[0];
         (0..self.corners.len())
             .map(|i| {

@@ -9,9 +9,9 @@ use super::tiling::Tiling;
 const CELLS: [f64; 2] = [4096.0, 512.0];
 
 /// Volume of `region` \[m³\], in two dimensions area \[m²\]: the closed form where there is one. Otherwise
-/// cells much smaller than the region, at most half a `spacing`, are counted; one cut by the boundary counts
-/// by the part that a plane at its distance cuts off, so that the error falls with the square of the cell
-/// size.
+/// cells much smaller than the region, of at most half a `spacing`, are counted. A cell at the boundary
+/// counts by the fraction behind a plane at its signed distance, so that the error decreases with the square
+/// of the cell size.
 pub(super) fn volume(region: &dyn Region, spacing: f64, axes: usize) -> f64 {
     if let Some(volume) = region.volume() {
         return volume;
@@ -34,7 +34,7 @@ pub(super) fn volume(region: &dyn Region, spacing: f64, axes: usize) -> f64 {
         };
         block.cells().map(part).sum::<f64>()
     };
-    // Summed in the order of the blocks, not of the threads.
+    // The sum is in the order of blocks, independent of threads.
     let cells: Vec<f64> = blocks.par_iter().map(cells_of).collect();
     cells.iter().sum::<f64>() * tiling.cell_volume()
 }

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::rings::Rings;
 
-/// A box along the axes, given by its corners \[m\].
+/// An axis-aligned box, given by its corners \[m\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb {
     /// Corner with the smallest coordinates \[m\].
@@ -14,25 +14,25 @@ pub struct Aabb {
 }
 
 impl Aabb {
-    /// The smallest box that holds all `points` \[m\]; around no points, one at the origin.
+    /// The bounding box of `points` \[m\]; without points, an empty box at the origin.
     pub fn around(points: impl IntoIterator<Item = DVec3>) -> Self {
         let of_point = |point| Self { min: point, max: point };
         let all = points.into_iter().map(of_point).reduce(|bounds, point| bounds.union(&point));
         all.unwrap_or(of_point(DVec3::ZERO))
     }
 
-    /// The box of no bounds; in two dimensions the plane z = 0.
+    /// The unbounded box; in two dimensions the plane z = 0.
     pub(super) fn everything(axes: usize) -> Self {
         let far = DVec3::new(f64::INFINITY, f64::INFINITY, if axes == 3 { f64::INFINITY } else { 0.0 });
         Self { min: -far, max: far }
     }
 
-    /// Whether no side goes on for ever.
+    /// Whether all sides are finite.
     pub fn is_bounded(&self) -> bool {
         self.min.is_finite() && self.max.is_finite()
     }
 
-    /// The box with `margin` \[m\] on all sides.
+    /// The box extended by `margin` \[m\] on all sides.
     pub fn grown(&self, margin: f64) -> Self {
         Self { min: self.min - margin, max: self.max + margin }
     }
@@ -47,23 +47,23 @@ impl Aabb {
         0.5 * (self.min + self.max)
     }
 
-    /// The smallest box that holds both.
+    /// The bounding box of both.
     pub fn union(&self, other: &Self) -> Self {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
-    /// The common part; where there is none, a box of no extent.
+    /// The intersection; a box of zero extent where it is empty.
     pub fn intersection(&self, other: &Self) -> Self {
         let min = self.min.max(other.min);
         Self { min, max: self.max.min(other.max).max(min) }
     }
 
-    /// Whether the boxes have no inner point in common. Only the first `axes` axes count.
+    /// Whether the interiors of the boxes are disjoint, in the first `axes` axes.
     pub(super) fn is_apart(&self, other: &Self, axes: usize) -> bool {
         (0..axes).any(|k| self.max[k] <= other.min[k] || other.max[k] <= self.min[k])
     }
 
-    /// Whether the boxes have a point in common.
+    /// Whether the boxes intersect or touch.
     pub(super) fn touches(&self, other: &Self) -> bool {
         self.min.cmple(other.max).all() && other.min.cmple(self.max).all()
     }
@@ -80,25 +80,26 @@ impl Aabb {
 /// A set of points with its boundary. In two dimensions the points lie in z = 0 and a volume is an area
 /// \[m²\].
 pub trait Region: Send + Sync {
-    /// Signed distance from `point` to the boundary \[m\], negative inside. The sign is exact, the magnitude
-    /// never more than the true distance (boolean combinations may give less).
+    /// Signed distance from `point` to the boundary \[m\], negative inside. The sign is exact, and the
+    /// magnitude never exceeds the true distance (boolean combinations may underestimate it).
     fn distance(&self, point: DVec3) -> f64;
 
-    /// The same of a point before an opening, where a face of a hole coincides with one of the body it is cut
-    /// out of: from what is beside the opening, as there is no lid. Elsewhere the distance.
+    /// The signed distance with openings, where a face of a hole coincides with one of the body it is cut out
+    /// of: in front of an opening it is the distance from the material beside it. Elsewhere it equals
+    /// [`Region::distance`].
     fn clearance(&self, point: DVec3) -> f64 {
         self.distance(point)
     }
 
-    /// A box that holds the region, the smallest one except for rotated shapes and for combinations.
+    /// A box that contains the region; it is the smallest one except for rotated shapes and combinations.
     fn bounds(&self) -> Aabb;
 
-    /// Volume \[m³\], in two dimensions area \[m²\], where it is known in closed form.
+    /// Volume \[m³\], in two dimensions area \[m²\], where it has a closed form.
     fn volume(&self) -> Option<f64>;
 
     /// Whether `point` is inside or on the boundary. Points closer to the boundary than 1e-9 of the diagonal
-    /// of the bounding box (without one, of the distance from the origin) are on it, so that round-off
-    /// decides nothing.
+    /// of the bounding box (without one, of the distance from the origin) are on it, so that round-off has no
+    /// influence.
     fn contains(&self, point: DVec3) -> bool {
         let tolerance = self.tolerance();
         self.distance(point) <= if tolerance.is_finite() { tolerance } else { 1e-9 * point.length() }
@@ -109,23 +110,23 @@ pub trait Region: Send + Sync {
         1e-9 * self.bounds().extent().length()
     }
 
-    /// The box whose sides the cells of a lattice divide evenly: for a combination that of its first shape.
+    /// The box whose sides the cells of a lattice divide evenly; for a combination that of its first shape.
     fn frame(&self) -> Aabb {
         self.bounds()
     }
 
-    /// The box that the cells of a wall of this region divide evenly, if boxes are cut out of it and
-    /// [`Region::frame`] does not fit that.
+    /// The box that the cells of a wall of this region divide evenly, if it has box-shaped cavities that
+    /// [`Region::frame`] does not fit.
     fn wall_frame(&self, _spacing: f64) -> Option<Aabb> {
         None
     }
 
-    /// Thicknesses that the bounding box does not show, with the name of their direction \[m\].
+    /// Wall thicknesses that do not follow from the bounding box, with the name of their direction \[m\].
     fn walls(&self) -> Vec<(&'static str, f64)> {
         Vec::new()
     }
 
-    /// From where to where along an axis \[m\] the region is known to fill a box from side to side.
+    /// Interval along an axis \[m\] in which the region certainly fills the whole cross-section of a box.
     fn slab(&self, axis: usize, within: &Aabb) -> Option<[f64; 2]> {
         let mut faces = [Vec::new(), Vec::new(), Vec::new()];
         if !self.box_faces(&mut faces) || faces[0].len() != 2 {
@@ -136,14 +137,14 @@ pub trait Region: Send + Sync {
         (0..3).all(|k| k == axis || fills(k)).then(|| [faces[axis][0], faces[axis][1]])
     }
 
-    /// Appends the coordinates of the faces and returns true if the region is made of boxes along the axes
+    /// Appends the coordinates of the faces and returns true if the region consists of axis-aligned boxes
     /// alone.
     fn box_faces(&self, _faces: &mut [Vec<f64>; 3]) -> bool {
         false
     }
 
-    /// Appends the coordinates of the faces of what is cut out of this region, and returns true if all of it
-    /// is made of boxes along the axes.
+    /// Appends the coordinates of the faces of the cavities of this region, and returns true if all cavities
+    /// consist of axis-aligned boxes.
     fn cavity_faces(&self, _faces: &mut [Vec<f64>; 3]) -> bool {
         true
     }
@@ -154,8 +155,8 @@ pub trait Region: Send + Sync {
     }
 }
 
-/// Signed distance to what is both within a prism and between its ends, from the distance to the side of the
-/// prism and that to the ends \[m\].
+/// Signed distance to a prism with flat ends, from the signed distances to its lateral surface and to its
+/// ends \[m\].
 pub(super) fn capped(side: f64, ends: f64) -> f64 {
     side.max(ends).min(0.0) + side.max(0.0).hypot(ends.max(0.0))
 }

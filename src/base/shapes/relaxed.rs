@@ -9,18 +9,18 @@ use super::site::{Content, Site};
 use super::tiling::{CellBox, Tiling};
 use super::voronoi::{self, CellMoments};
 
-/// Least distance of two random points at the start \[spacings\].
+/// Minimum distance of random points at the start \[spacings\].
 const SEPARATION: f64 = 0.6;
-/// Failed draws for each wanted point, after which the least distance is lowered.
+/// Failed draws per requested point, after which the minimum distance is lowered.
 const PATIENCE: usize = 200;
-/// Samples along each side of a cell, in two and three dimensions: for a step of Lloyd's method and for the
+/// Samples along each side of a cell in two and three dimensions, for a step of Lloyd's method and for the
 /// volumes.
 const STEP_SAMPLES: [usize; 2] = [6, 3];
 const VOLUME_SAMPLES: [usize; 2] = [12, 6];
 
-/// About `volume / spacing^d` irregular particles in `region`: random points with a least distance, moved
+/// About `volume / spacing^d` irregular particles in `region`: random points with a minimum distance, moved
 /// `iterations` times to the centroids of their Voronoi cells (Lloyd, IEEE Trans. Inf. Theory 28, 1982). Each
-/// has the volume of its cell; together they have `volume`. The cost is proportional to the number of
+/// has the volume of its cell; the sum of volumes is `volume`. The cost is proportional to the number of
 /// particles.
 pub(super) fn sites(content: Content<'_>, seed: u64, iterations: u32) -> Vec<Site> {
     let Content { region, volume, spacing, axes } = content;
@@ -32,7 +32,7 @@ pub(super) fn sites(content: Content<'_>, seed: u64, iterations: u32) -> Vec<Sit
         let moments = voronoi::moments(region, &tiling, &points, STEP_SAMPLES[axes - 2]);
         for (point, cell) in points.iter_mut().zip(moments) {
             let centroid = cell.first / cell.volume;
-            // The centroid of a cell that is bent about a hole or a notch may be outside.
+            // The centroid of a non-convex cell at a hole or a notch may be outside.
             if cell.volume > 0.0 && region.contains(centroid) {
                 *point = centroid;
             }
@@ -44,10 +44,11 @@ pub(super) fn sites(content: Content<'_>, seed: u64, iterations: u32) -> Vec<Sit
     points.into_iter().zip(moments).map(site).filter(|site| site.volume > 0.0).collect()
 }
 
-/// `count` random points in the region, no two closer than `SEPARATION` spacings as long as there is room.
+/// `count` random points in the region, no two closer than `SEPARATION` spacings while such points can be
+/// found.
 fn scatter(region: &dyn Region, tiling: &Tiling, count: usize, spacing: f64, seed: u64) -> Vec<DVec3> {
     let blocks = tiling.blocks(region, 1, 1);
-    // Looked up only: its own order has no influence.
+    // The map is only used for look-ups, so its order has no influence.
     let mut taken: HashMap<[usize; 3], Vec<DVec3>> = HashMap::new();
     let mut random = SplitMix(seed);
     let mut points: Vec<DVec3> = Vec::with_capacity(count);
@@ -78,7 +79,7 @@ fn scatter(region: &dyn Region, tiling: &Tiling, count: usize, spacing: f64, see
 struct SplitMix(u64);
 
 impl SplitMix {
-    /// The next number, evenly distributed in 0 <= x < 1.
+    /// The next number, uniformly distributed in 0 <= x < 1.
     fn unit(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;

@@ -1,5 +1,4 @@
-//! Discs and rings, cylinders and tubes, balls and hollow spheres: shapes that layers about a centre or an
-//! axis fill.
+//! Shapes of concentric lattices: discs and rings, cylinders and tubes, balls and hollow spheres.
 
 use glam::DVec3;
 
@@ -38,7 +37,7 @@ pub enum Rings {
 }
 
 impl Rings {
-    /// The same moved by a map that keeps lengths.
+    /// The same shape moved by an isometry.
     pub(super) fn moved(self, to: impl Fn(DVec3) -> DVec3) -> Self {
         match self {
             Self::Plane { center, inner, outer } => Self::Plane { center: to(center), inner, outer },
@@ -49,8 +48,7 @@ impl Rings {
         }
     }
 
-    /// The remaining shape without `hole`, if that is a solid one about the same centre or axis, and goes
-    /// through from end to end.
+    /// The shape without `hole`, if the hole is solid, concentric, and extends from end to end.
     pub(super) fn bored(self, hole: Self) -> Option<Self> {
         match (self, hole) {
             (
@@ -88,10 +86,10 @@ impl Rings {
     }
 }
 
-/// Distance of two centres over the size of the shapes, up to which they are the same.
+/// Maximum distance of coincident centres, over the size of the shapes.
 const SAME: f64 = 1e-9;
 
-/// The inner radius with a bore; none where nothing is left.
+/// The inner radius with a bore; `None` where no material remains.
 fn bored_radius(inner: f64, outer: f64, bore: f64) -> Option<f64> {
     (bore < outer).then_some(inner.max(bore))
 }

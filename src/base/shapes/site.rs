@@ -1,10 +1,10 @@
-//! A place of a particle, and a region that gets particles.
+//! The position and volume of a particle, and a region to be filled.
 
 use glam::DVec3;
 
 use super::region::Region;
 
-/// Where a particle is, and how much of the shape it takes.
+/// Position and volume of a particle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Site {
     /// Position \[m\]; z is 0 in two dimensions.
@@ -13,13 +13,13 @@ pub struct Site {
     pub volume: f64,
 }
 
-/// A region that gets particles.
+/// A region to be filled with particles.
 #[derive(Clone, Copy)]
 pub(super) struct Content<'a> {
     pub region: &'a dyn Region,
     /// Volume of all particles, m3.
     pub volume: f64,
     pub spacing: f64,
-    /// Number of axes of the scene.
+    /// Number of space dimensions of the scene.
     pub axes: usize,
 }

@@ -1,4 +1,4 @@
-//! The surface of a shape, as contact with a tool needs it.
+//! The surface of a shape, for contact with a tool.
 
 use std::f64::consts::TAU;
 
@@ -7,27 +7,27 @@ use glam::DVec3;
 use super::moments::Moments;
 use super::region::Region;
 
-/// The point of a surface that is nearest to a given one.
+/// The nearest point of a surface to a query point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfacePoint {
     /// The nearest point of the surface \[m\].
     pub point: DVec3,
     /// n, unit normal of the surface there, outward \[-\]. At edges and corners it is along the line from
-    /// `point` to the point asked for (against it from inside); for a point on them, the mean of the normals
-    /// that meet there.
+    /// `point` to the query point (reversed from inside); for a query point on them, it is the mean of the
+    /// adjacent normals.
     pub normal: DVec3,
-    /// Distance from the point asked for, negative inside \[m\].
+    /// Signed distance of the query point, negative inside \[m\].
     pub signed_distance: f64,
 }
 
-/// A region that knows the nearest point of its surface exactly. In two dimensions everything lies in z = 0.
+/// A region with an exact nearest point of its surface. In two dimensions all points have z = 0.
 pub trait Surface: Region {
-    /// The point of the surface that is nearest to `point`. Of several equally near ones the choice is fixed:
-    /// the same `point` always has the same answer.
+    /// The point of the surface that is nearest to `point`. Among equidistant points the choice is
+    /// deterministic.
     fn closest(&self, point: DVec3) -> SurfacePoint;
 
-    /// Sharp edges, straight ones by their two ends, round ones in pieces not much longer than `piece` \[m\];
-    /// corners of two dimensions and tips are pieces without length. Smooth surfaces have none.
+    /// Sharp edges: straight ones by their two ends, curved ones in pieces not much longer than `piece`
+    /// \[m\]. Two-dimensional corners and tips are pieces of zero length. Smooth surfaces have none.
     fn edges(&self, _piece: f64) -> Vec<[DVec3; 2]> {
         Vec::new()
     }
@@ -49,7 +49,7 @@ pub(super) fn circle(center: DVec3, axis: DVec3, radius: f64, piece: f64) -> Vec
     (0..parts).map(|k| [at(k), at(k + 1)]).collect()
 }
 
-/// The point nearest to `point` of the surface between two concentric circles or spheres.
+/// The nearest point to `point` on two concentric circles or spheres.
 pub(super) fn closest_between(center: DVec3, inner: f64, outer: f64, point: DVec3) -> SurfacePoint {
     let arm = point - center;
     let radial = arm.try_normalize().unwrap_or(DVec3::X);
@@ -65,7 +65,7 @@ pub(super) struct Facing {
 }
 
 impl Facing {
-    /// The nearer one of two faces of which a point inside is behind both.
+    /// The nearer one of two faces, for a point behind both.
     #[inline]
     pub fn outermost(self, other: Self) -> Self {
         if other.distance > self.distance { other } else { self }
@@ -82,8 +82,9 @@ impl Facing {
     }
 }
 
-/// The nearest point of what lies behind all `faces`, whose normals are at right angles to each other: inside
-/// that of the nearest face, outside that of the edge or corner of all faces that the point is in front of.
+/// The nearest surface point of the intersection of half-spaces behind `faces` with orthogonal normals. It is
+/// on the nearest face for a point inside, and on the face, edge or corner of all faces in front of which a
+/// point outside is.
 #[inline]
 pub(super) fn behind_all(point: DVec3, faces: &[Facing]) -> SurfacePoint {
     let in_front = faces.iter().filter(|face| face.distance > 0.0);

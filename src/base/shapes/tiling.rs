@@ -1,14 +1,14 @@
-//! Cells that tile a region: the frame of regular lattices, of numerical volumes and of neighbour look-ups.
+//! Cells that tile a region, for regular lattices, numerical volumes and neighbour look-ups.
 
 use glam::DVec3;
 
 use super::region::{Aabb, Region};
 
-/// A grid of equal cells. In two dimensions it is one cell of no height at z = 0.
+/// A uniform grid. In two dimensions it has one layer of zero height at z = 0.
 pub(super) struct Tiling {
-    /// Where the cell with index 0 begins \[m\].
+    /// Minimum corner of the cell with index 0 \[m\].
     origin: DVec3,
-    /// Index of the first cell along each axis: negative where the grid reaches out below `origin`.
+    /// Index of the first cell along each axis: negative where the grid extends below `origin`.
     first: [i64; 3],
     /// Number of cells along each axis.
     pub counts: [usize; 3],
@@ -17,7 +17,7 @@ pub(super) struct Tiling {
     pub axes: usize,
 }
 
-/// A box of cells, `low <= index < high`, that is not wholly outside a region.
+/// A box of cells, `low <= index < high`, that is not entirely outside a region.
 pub(super) struct CellBox {
     pub low: [usize; 3],
     pub high: [usize; 3],
@@ -26,13 +26,13 @@ pub(super) struct CellBox {
 }
 
 impl Tiling {
-    /// Cells of about the size `spacing` that divide `frame` evenly and go on until they cover `bounds`.
+    /// Cells of about the size `spacing` that divide `frame` evenly and extend until they cover `bounds`.
     pub fn new(frame: &Aabb, bounds: &Aabb, spacing: DVec3, axes: usize) -> Self {
         let mut tiling = Self { origin: frame.min, first: [0; 3], counts: [1; 3], cell: DVec3::ZERO, axes };
         for k in 0..axes {
             let side = frame.max[k] - frame.min[k];
             let cell = side / (side / spacing[k]).round().max(1.0);
-            // The small number keeps round-off from adding a layer of cells where both ends agree.
+            // The small number prevents round-off from adding a layer of cells where both ends coincide.
             let first = ((bounds.min[k] - frame.min[k]) / cell + 1e-6).floor();
             let last = ((bounds.max[k] - frame.min[k]) / cell - 1e-6).ceil();
             tiling.cell[k] = cell;
@@ -47,7 +47,7 @@ impl Tiling {
         (0..self.axes).map(|k| self.cell[k]).product()
     }
 
-    /// The point of cell `index` at the given parts of its sides (0.5: the centre) \[m\].
+    /// The point of cell `index` at the given fractions of its sides (0.5: the centre) \[m\].
     pub fn point(&self, index: [usize; 3], part: DVec3) -> DVec3 {
         let along =
             |k: usize| self.origin[k] + ((self.first[k] + index[k] as i64) as f64 + part[k]) * self.cell[k];
@@ -59,7 +59,7 @@ impl Tiling {
         [0, 1, 2].map(|k| self.first[k] + index[k] as i64)
     }
 
-    /// The cell that holds `point`, or the nearest one.
+    /// The cell that contains `point`, or the nearest one.
     pub fn index(&self, point: DVec3) -> [usize; 3] {
         [0, 1, 2].map(|k| {
             if k >= self.axes {
@@ -70,9 +70,8 @@ impl Tiling {
         })
     }
 
-    /// Blocks of at most `leaf` cells a side that together hold all cells which touch the region. Blocks
-    /// inside may be as large as `inside_leaf` cells a side. They come in a fixed order, near ones after each
-    /// other.
+    /// Blocks of at most `leaf` cells per side that contain all cells which touch the region. Blocks inside
+    /// may have up to `inside_leaf` cells per side. Their order is fixed and spatially coherent.
     pub fn blocks(&self, region: &dyn Region, leaf: usize, inside_leaf: usize) -> Vec<CellBox> {
         let side = self.counts.iter().copied().max().unwrap_or(1).next_power_of_two();
         let mut splitting = Splitting { tiling: self, region, leaf, inside_leaf, blocks: Vec::new() };
@@ -85,7 +84,7 @@ impl Tiling {
 struct Splitting<'a> {
     tiling: &'a Tiling,
     region: &'a dyn Region,
-    /// Largest number of cells along a side: of all blocks, and of those inside.
+    /// Maximum number of cells per side, of all blocks and of those inside.
     leaf: usize,
     inside_leaf: usize,
     blocks: Vec<CellBox>,
@@ -122,7 +121,7 @@ impl Splitting<'_> {
 }
 
 impl CellBox {
-    /// The cells of the block, x fastest.
+    /// The cells of the block, with x as the fastest index.
     pub fn cells(&self) -> impl Iterator<Item = [usize; 3]> + use<> {
         let (low, high) = (self.low, self.high);
         (low[2]..high[2])

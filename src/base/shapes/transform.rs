@@ -1,4 +1,4 @@
-//! Moved, turned and stretched regions.
+//! Translated, rotated and scaled regions.
 
 use glam::{DQuat, DVec3};
 
@@ -7,20 +7,20 @@ use super::region::{Aabb, Region};
 use super::rings::Rings;
 use super::surface::{Surface, SurfacePoint};
 
-/// A region moved by `by`.
+/// A region translated by `by`.
 pub(super) struct Translated<R: ?Sized> {
     pub region: Box<R>,
     pub by: DVec3,
 }
 
-/// A region turned by `turn` about the point `about`.
+/// A region rotated by `turn` about the point `about`.
 pub(super) struct Rotated<R: ?Sized> {
     pub region: Box<R>,
     pub turn: DQuat,
     pub about: DVec3,
 }
 
-/// A region stretched by positive factors from the point `about`; in two dimensions the factor along z is 1.
+/// A region scaled by positive factors from the point `about`; in two dimensions the factor along z is 1.
 pub(super) struct Scaled<R: ?Sized> {
     pub region: Box<R>,
     pub by: DVec3,
@@ -28,7 +28,7 @@ pub(super) struct Scaled<R: ?Sized> {
     pub axes: usize,
 }
 
-/// Where a rotation about the point `about` takes a point.
+/// The image of a point under a rotation about the point `about`.
 pub(super) fn turned(turn: DQuat, about: DVec3, point: DVec3) -> DVec3 {
     about + turn * (point - about)
 }
@@ -97,12 +97,13 @@ impl<R: Region + ?Sized> Region for Rotated<R> {
 }
 
 impl<R: ?Sized> Scaled<R> {
-    /// Where a point was before.
+    /// The point before the scaling.
     fn before(&self, point: DVec3) -> DVec3 {
         self.about + (point - self.about) / self.by
     }
 
-    /// The smallest factor, which makes a distance a lower bound of that after; the sign is exact.
+    /// The smallest factor. A distance times it is a lower bound of the distance after the scaling; the sign
+    /// is exact.
     fn smallest(&self) -> f64 {
         if self.axes == 3 { self.by.min_element() } else { self.by.truncate().min_element() }
     }
@@ -181,7 +182,7 @@ impl<R: Surface + ?Sized> Surface for Rotated<R> {
     }
 }
 
-/// For equal factors only: others turn the nearest point into one that is not.
+/// Only valid for uniform scaling, which alone preserves nearest points.
 impl<R: Surface + ?Sized> Surface for Scaled<R> {
     fn closest(&self, point: DVec3) -> SurfacePoint {
         let found = self.region.closest(self.about + (point - self.about) / self.by);

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::region::Region;
 use super::tiling::{CellBox, Tiling};
 
-/// Volume and first moment of what lies nearer to one point than to any other.
+/// Volume and first moment of a Voronoi cell.
 #[derive(Clone, Copy, Default)]
 pub(super) struct CellMoments {
     /// Volume \[m³\] (area \[m²\]).
@@ -15,10 +15,10 @@ pub(super) struct CellMoments {
     pub first: DVec3,
 }
 
-/// Points sorted by the cell of a tiling that they are in. Only cells with points take memory.
+/// Points sorted by their cell of a tiling. Only occupied cells take memory.
 struct TileBuckets<'a> {
     tiling: &'a Tiling,
-    /// Cell as z, y, x, and number of the point, in this order.
+    /// Cell indices z, y, x and index of the point, in ascending order.
     sorted: Vec<([usize; 3], u32)>,
 }
 
@@ -33,7 +33,7 @@ impl<'a> TileBuckets<'a> {
         Self { tiling, sorted }
     }
 
-    /// The points in the cells up to `reach` cells away.
+    /// The points in cells up to `reach` cells away.
     fn around(&self, cell: [usize; 3], reach: usize) -> impl Iterator<Item = u32> {
         let low = cell.map(|n| n.saturating_sub(reach));
         let high = [0, 1, 2].map(|k| (cell[k] + reach + 1).min(self.tiling.counts[k]));
@@ -45,7 +45,7 @@ impl<'a> TileBuckets<'a> {
     }
 }
 
-/// Moments of the Voronoi cells of `points`, cut off at the boundary of `region`; each cell of `tiling` is
+/// Moments of the Voronoi cells of `points`, clipped at the boundary of `region`; each cell of `tiling` is
 /// sampled `samples` times along each axis.
 pub(super) fn moments(
     region: &dyn Region,
@@ -64,7 +64,7 @@ pub(super) fn moments(
     };
     let found: Vec<Vec<(u32, CellMoments)>> = blocks.par_iter().map(of_block).collect();
     let mut moments = vec![CellMoments::default(); points.len()];
-    // In the order of the blocks, so that the sums do not depend on the threads.
+    // The sum is in the order of blocks, so that it does not depend on the number of threads.
     for (n, part) in found.into_iter().flatten() {
         moments[n as usize].volume += part.volume;
         moments[n as usize].first += part.first;
@@ -81,7 +81,7 @@ struct Sampling<'a> {
     samples: usize,
 }
 
-/// The two points that are nearest to a sample: distance squared, and number among those near.
+/// The two points that are nearest to a sample: squared distance, and index among the near points.
 #[derive(Clone, Copy)]
 struct Nearest {
     first: (f64, usize),
@@ -102,9 +102,9 @@ impl Nearest {
         found
     }
 
-    /// The part of a sample of this width that belongs to the nearest point. One that the plane between the
-    /// two points cuts is shared, as if the plane were along a face of it: the error falls with the square of
-    /// the sample's size.
+    /// The fraction of a sample of the given width that belongs to the nearest point. A sample that the
+    /// bisecting plane of the two points cuts is divided as if the plane were parallel to one of its faces,
+    /// so that the error decreases with the square of the sample size.
     fn share(&self, near: &[(DVec3, u32)], width: f64) -> f64 {
         if !self.second.0.is_finite() {
             return 1.0;
@@ -116,7 +116,7 @@ impl Nearest {
 }
 
 impl Sampling<'_> {
-    /// Adds the moments of what is in a cell of the tiling, point by point.
+    /// Adds the contributions of a cell of the tiling to the moments of its points.
     fn add_cell(&self, cell: [usize; 3], inside: bool, found: &mut Vec<(u32, CellMoments)>) {
         let Self { region, buckets, points, samples } = *self;
         let tiling = buckets.tiling;
@@ -137,7 +137,7 @@ impl Sampling<'_> {
             }
             let nearest = Nearest::of(&near, point);
             let weight = part * volume;
-            // Every point within one cell's side is in the cells around.
+            // All points within the side of a cell are in the adjacent cells.
             if nearest.first.0 > safe * safe {
                 let far = nearest_far(buckets, points, cell, point, safe);
                 found.push((far, CellMoments { volume: weight, first: weight * point }));
@@ -158,7 +158,7 @@ impl Sampling<'_> {
     }
 }
 
-/// The nearest of `points`, in rings of cells that widen until none outside can be nearer.
+/// The nearest of `points`, searched in rings of cells that expand until no outer point can be nearer.
 fn nearest_far(buckets: &TileBuckets, points: &[DVec3], cell: [usize; 3], point: DVec3, safe: f64) -> u32 {
     let widest = buckets.tiling.counts.iter().copied().max().unwrap_or(1);
     let mut best = (f64::INFINITY, 0);

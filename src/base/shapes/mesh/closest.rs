@@ -1,4 +1,4 @@
-//! The nearest point of a mesh with its sign.
+//! The nearest point of a mesh, with the signed distance.
 
 use glam::DVec3;
 
@@ -31,7 +31,8 @@ impl MeshSolid {
             TrianglePart::Corner(k) => self.normals.corners[self.triangles.corners[triangle][k] as usize],
         };
         let sign = if arm.dot(normal) < 0.0 { -1.0 } else { 1.0 };
-        // So near to an edge that the direction to it would be round-off, the mean normal is as good.
+        // Very near to an edge the direction to it is dominated by round-off, and the mean normal replaces
+        // it.
         let direction = if arm.length() > self.tolerance() { sign * arm.normalize() } else { normal };
         SurfacePoint { point: foot, normal: direction, signed_distance: sign * arm.length() }
     }

@@ -1,4 +1,4 @@
-//! From a file to a checked solid.
+//! Reading of a mesh file to a checked solid.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ use crate::shapes::mesh_fault::MeshFault;
 /// Reads a mesh and multiplies its coordinates by `scale` \[m per unit of the file\].
 ///
 /// # Errors
-/// The file cannot be read, or its mesh is no solid.
+/// The file cannot be read, or its mesh does not bound a solid.
 pub(in crate::shapes) fn load(folder: &Path, file: &str, scale: f64) -> Result<MeshSolid, FillErrorKind> {
     let full = folder.join(file);
     let shown = full.display().to_string();

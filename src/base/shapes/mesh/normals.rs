@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use super::topology::Triangles;
 
-/// The normals that tell inside from outside wherever the nearest point is: on a face its normal, on an edge
-/// the mean of both faces, at a corner the mean weighted by angles.
+/// Pseudonormals, which give the sign of the distance for any nearest point: the normal on a face, the mean
+/// of both faces on an edge, the angle-weighted mean at a vertex.
 ///
 /// Bærentzen and Aanæs, Signed distance computation using the angle weighted pseudonormal, IEEE Transactions
 /// on Visualization and Computer Graphics 11 (2005), 243-253.
@@ -41,10 +41,10 @@ impl Normals {
     }
 }
 
-/// Cosine of the angle between normals beyond which an edge or corner counts as sharp: 20 degrees.
+/// Cosine of the angle between normals beyond which an edge or vertex is sharp, 20 degrees.
 const SHARP: f64 = 0.94;
 
-/// Edges between faces that meet at an angle, and the tips of cones.
+/// Sharp edges between faces, and the tips of cones.
 pub(super) fn sharp_edges(
     triangles: &Triangles,
     neighbors: &[[u32; 3]],

@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use crate::shapes::mesh_fault::MeshFault;
 
-/// The triangles of an OBJ file \[unit of the file\]. Faces of more than three corners are cut into triangles
-/// from their first corner on, which is right for convex ones.
+/// The triangles of an OBJ file \[unit of the file\]. Faces of more than three corners are triangulated as
+/// fans from their first corner, which is correct for convex faces.
 pub(super) fn read(text: &str) -> Result<Vec<[DVec3; 3]>, MeshFault> {
     let mut points = Vec::new();
     let mut triangles = Vec::new();
@@ -27,7 +27,7 @@ pub(super) fn read(text: &str) -> Result<Vec<[DVec3; 3]>, MeshFault> {
     Ok(triangles)
 }
 
-/// The point that a word of a face names: `7`, `7/1`, `7//3`, `7/1/3`; counted from 1, or backwards from -1.
+/// The vertex reference of a face: `7`, `7/1`, `7//3`, `7/1/3`; counted from 1, or backwards from -1.
 fn corner(word: &str, points: &[DVec3], line: usize) -> Result<DVec3, MeshFault> {
     let number = word.split('/').next().unwrap_or(word);
     let index = match number.parse::<i64>() {

@@ -1,10 +1,10 @@
-//! Points as the texts of meshes write them.
+//! Points in the text formats of meshes.
 
 use glam::DVec3;
 
 use crate::shapes::mesh_fault::MeshFault;
 
-/// Three numbers of a line; further ones are passed over.
+/// Three numbers of a line; further ones are ignored.
 pub(super) fn point<'a>(words: impl Iterator<Item = &'a str>, line: usize) -> Result<DVec3, MeshFault> {
     let wrong = |message: String| MeshFault::Line { line, message };
     let mut point = [0.0; 3];

@@ -13,15 +13,15 @@ pub(in crate::shapes) struct MeshSolid {
     pub(super) triangles: Triangles,
     pub(super) normals: Normals,
     pub(super) tree: Tree,
-    /// Sharp edges by their ends, and tips.
+    /// Sharp edges by their end points, and tips.
     pub(super) edges: Vec<[DVec3; 2]>,
     bounds: Aabb,
     volume: f64,
 }
 
 impl MeshSolid {
-    /// Joins and checks triangles given by their corners \[m\]. Meshes that face inward as a whole are
-    /// turned.
+    /// Joins and checks triangles given by their corners \[m\]. The orientation of a mesh that faces inward
+    /// is reversed.
     ///
     /// # Errors
     /// The triangles are not the surface of a solid.
@@ -51,8 +51,8 @@ impl MeshSolid {
     }
 }
 
-/// The volume of the tetrahedra between the triangles and a point near them, positive if they face away from
-/// the inside \[m³\].
+/// Signed volume of the tetrahedra between the triangles and a point near them, positive for outward
+/// orientation \[m³\].
 fn volume(triangles: &Triangles, origin: DVec3) -> f64 {
     let six_times = |n: usize| {
         let [a, b, c] = triangles.at(n).map(|corner| corner - origin);

@@ -9,11 +9,11 @@ const HEAD: usize = 84;
 /// A triangle of a binary file: normal, three corners, two bytes, all f32 and little endian, bytes.
 const RECORD: usize = 50;
 
-/// The triangles of an STL file \[unit of the file\]. Normals in the file are not used: the order of the
-/// corners says the same.
+/// The triangles of an STL file \[unit of the file\]. Normals in the file are not used: they follow from the
+/// order of the corners.
 ///
-/// A file whose length is that of a binary one is binary, also if it begins with `solid`, as the files of
-/// some programs do.
+/// A file with the length of a binary file is binary, even if it begins with `solid`, as those of some
+/// programs do.
 pub(super) fn read(bytes: &[u8]) -> Result<Vec<[DVec3; 3]>, MeshFault> {
     let count = bytes.get(HEAD - 4..HEAD).map_or(0, u32_of);
     let expected = HEAD as u64 + RECORD as u64 * u64::from(count);

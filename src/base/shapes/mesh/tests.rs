@@ -1,4 +1,4 @@
-//! Meshes of known solids: volumes in closed form, distances by a naive second implementation, faults.
+//! Meshes of known solids: volumes in closed form, distances by a naive second implementation, defects.
 
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
@@ -19,7 +19,7 @@ mod moments;
 
 type Soup = Vec<[DVec3; 3]>;
 
-/// The triangles of a grid of points that closes upon itself both ways.
+/// The triangles of a grid of points that is periodic in both directions.
 fn closed_grid(n: usize, m: usize, point: impl Fn(usize, usize) -> DVec3) -> Soup {
     let quad = |i: usize, j: usize| {
         let at = |i: usize, j: usize| point(i % n, j % m);
@@ -37,7 +37,7 @@ fn torus(n: usize, m: usize, radius: f64, thickness: f64) -> Soup {
     })
 }
 
-/// A sphere of n by m quads; those at the poles have two equal corners.
+/// A sphere of n by m quadrilaterals; those at the poles have two equal corners.
 fn ball(n: usize, m: usize) -> Soup {
     let quad = |i: usize, j: usize| {
         let at = |i: usize, j: usize| {
@@ -71,21 +71,22 @@ fn volumes_are_those_of_the_polyhedra() {
         (solid(&cube(DVec3::splat(1e3), DVec3::new(1002.0, 1003.0, 1005.0))).volume().unwrap() - 30.0).abs()
             < 1e-9
     );
-    // A regular polygon of m corners led round a regular polygon of n: Pappus with sines for arcs.
+    // A regular polygon of m corners swept along a regular polygon of n: Pappus's theorem with sines in the
+    // place of arcs.
     let (n, m) = (24, 16);
     let section = 0.5 * m as f64 * 0.09 * (TAU / m as f64).sin();
     let expected = n as f64 * (TAU / n as f64).sin() * section;
     assert!((solid(&torus(n, m, 1.0, 0.3)).volume().unwrap() / expected - 1.0).abs() < 1e-13);
-    // To second order in the size of the triangles that of the sphere.
+    // The volume is that of the sphere to second order in the size of the triangles.
     let error = |n: usize| 1.0 - solid(&ball(2 * n, n)).volume().unwrap() / (4.0 / 3.0 * PI);
     assert!((error(20) / error(40) - 4.0).abs() < 0.05, "{} {}", error(20), error(40));
-    // Inside out is turned.
+    // An inward orientation is reversed.
     let inward: Soup = torus(n, m, 1.0, 0.3).into_iter().map(|[a, b, c]| [a, c, b]).collect();
     let turned = solid(&inward);
     assert!((turned.volume().unwrap() / expected - 1.0).abs() < 1e-13 && turned.distance(DVec3::X) < 0.0);
 }
 
-/// Distance to a triangle from its plane and edges, written down plainly.
+/// Distance to a triangle from its plane and edges, in a naive implementation.
 fn naive_distance(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
     let segment = |a: DVec3, b: DVec3| {
         let t = ((p - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
@@ -97,7 +98,7 @@ fn naive_distance(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
     if within { edges.min((p - a).dot(n).abs() / n.length()) } else { edges }
 }
 
-/// How often the surface goes round a point: the sum of solid angles over 4 pi.
+/// Winding number of the surface about a point, the sum of solid angles over 4 pi.
 /// Van Oosterom and Strackee, IEEE Transactions on Biomedical Engineering 30 (1983), 125-126.
 fn winding(p: DVec3, triangles: &Soup) -> f64 {
     let angle = |t: &[DVec3; 3]| {
@@ -129,7 +130,7 @@ proptest! {
 
 #[test]
 fn nearest_points_at_edges_and_corners_of_a_cube() {
-    // The diagonals of the faces are edges of the mesh and must not show.
+    // The diagonals of the faces are edges of the mesh and must have no effect.
     let mesh = solid(&cube(DVec3::splat(-1.0), DVec3::ONE));
     let text = "Box(min: (-1, -1, -1), max: (1, 1, 1))";
     let block = ron::from_str::<Shape>(text).unwrap().surface(Three, Path::new(""), "").unwrap();
@@ -156,8 +157,8 @@ fn nearest_points_at_edges_and_corners_of_a_cube() {
 
 #[test]
 fn the_sign_holds_at_a_sharp_edge() {
-    // A wedge of one degree: in front of the edge the nearest point belongs to two faces that look away from
-    // each other.
+    // A wedge of one degree: in front of the edge the nearest point belongs to two faces with opposite
+    // normals.
     let s = 0.5f64.to_radians().sin();
     let (tip, tail) = ([DVec3::ZERO, DVec3::Z], [DVec3::new(1.0, s, 0.0), DVec3::new(1.0, -s, 0.0)]);
     let lift = |p: DVec3| p + DVec3::Z;
@@ -254,7 +255,7 @@ fn what_is_no_solid_is_refused() {
     let mut infinite = whole.clone();
     infinite[4][2].x = f64::INFINITY;
     assert!(matches!(fault(infinite), MeshFault::NotFinite(4)));
-    // A sheet with two sides, two cubes that share an edge, two that go through each other.
+    // A two-sided sheet, two cubes that share an edge, two intersecting cubes.
     let [a, b, c] = whole[0];
     assert!(matches!(fault(vec![[a, b, c], [a, c, b]]), MeshFault::NoVolume));
     let with = |min: DVec3, max: DVec3| [whole.clone(), cube(min, max)].concat();
@@ -266,7 +267,7 @@ fn what_is_no_solid_is_refused() {
         panic!()
     };
     assert!(pairs > 0 && at.cmpge(DVec3::splat(0.3)).all());
-    // A hollow of its own is a solid with a hole.
+    // A nested surface is a solid with a cavity.
     let hollow: Soup =
         cube(DVec3::splat(0.25), DVec3::splat(0.75)).into_iter().map(|[a, b, c]| [a, c, b]).collect();
     let mesh = solid(&[whole.clone(), hollow].concat());
@@ -296,7 +297,7 @@ fn particles_fill_the_volume_of_the_mesh() {
     let volume: f64 = sites.iter().map(|site| site.volume).sum();
     let polyhedron = solid(&torus(48, 24, 0.04, 0.012)).volume().unwrap();
     assert!((volume / polyhedron - 1.0).abs() < 1e-6, "{volume} {polyhedron}");
-    // All centres inside of the torus itself; the share of a particle is a cell.
+    // All centres are inside the torus itself; a particle counts as a cell.
     let inside = |p: DVec3| (p.truncate().length() - 0.04).hypot(p.z) < 0.012;
     assert!(sites.iter().all(|site| inside(site.position)));
     assert!((sites[0].volume / 0.003f64.powi(3) - 1.0).abs() < 0.05);

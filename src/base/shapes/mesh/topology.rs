@@ -9,15 +9,15 @@ use super::triangle::is_pierced;
 use crate::shapes::mesh_fault::MeshFault;
 use crate::shapes::region::Aabb;
 
-/// Corners that are shared, and triangles of three of them.
+/// Shared vertices, and triangles as triples of vertices.
 pub(super) struct Triangles {
     pub points: Vec<DVec3>,
     pub corners: Vec<[u32; 3]>,
 }
 
 impl Triangles {
-    /// Joins equal corners. Triangles that have no three different corners are left out: files of round parts
-    /// have some.
+    /// Merges equal corners. Degenerate triangles, with fewer than three different corners, are discarded;
+    /// files of round parts contain some.
     pub fn join(triangles: &[[DVec3; 3]]) -> Result<Self, MeshFault> {
         let mut joined = Self { points: Vec::new(), corners: Vec::new() };
         let mut known = BTreeMap::new();
@@ -26,7 +26,7 @@ impl Triangles {
                 return Err(MeshFault::NotFinite(n));
             }
             let numbers = triangle.map(|corner| {
-                // Adding zero makes -0 the same corner as 0.
+                // Adding zero maps -0 to 0.
                 let key = (corner + DVec3::ZERO).to_array().map(f64::to_bits);
                 *known.entry(key).or_insert_with(|| {
                     joined.points.push(corner);
@@ -49,7 +49,7 @@ impl Triangles {
     /// The triangle on the other side of each edge. Edges are in the order of the corners.
     ///
     /// # Errors
-    /// Edges of one or of more than two triangles, or of two that face opposite ways.
+    /// Edges of one or of more than two triangles, or of two with inconsistent orientation.
     pub fn neighbors(&self) -> Result<Vec<[u32; 3]>, MeshFault> {
         let mut edges: BTreeMap<(u32, u32), Vec<(u32, u8)>> = BTreeMap::new();
         for (n, corners) in self.corners.iter().enumerate() {
@@ -83,7 +83,7 @@ impl Triangles {
     }
 
     /// # Errors
-    /// Triangles go through each other.
+    /// Triangles intersect.
     pub fn check_crossings(&self, boxes: &[Aabb], tree: &Tree) -> Result<(), MeshFault> {
         let (mut pairs, mut first) = (0, None);
         for (n, bounds) in boxes.iter().enumerate() {
@@ -100,7 +100,7 @@ impl Triangles {
         Err(MeshFault::Crossing { pairs, at })
     }
 
-    /// Whether an edge of one triangle goes through the other. Edges that end at a common corner cannot.
+    /// Whether an edge of one triangle intersects the other. Edges with a common end point cannot.
     fn cross(&self, n: usize, other: usize) -> bool {
         let pierces = |n: usize, other: usize| {
             (0..3).any(|k| {

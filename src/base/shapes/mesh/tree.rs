@@ -1,31 +1,32 @@
-//! A bounding-volume tree of triangles: the nearest triangle, and those in a box.
+//! A bounding-volume hierarchy of triangles, for the nearest triangle and for those in a box.
 
 use glam::DVec3;
 
 use crate::shapes::region::Aabb;
 
-/// Triangles in a box of the lowest level.
+/// Maximum number of triangles of a leaf.
 const LEAF: usize = 4;
 
-/// A box that holds its two halves, or a few triangles.
+/// A node of the hierarchy: the bounding box of its two children, or of a few triangles.
 struct BoxNode {
     bounds: Aabb,
-    /// Of a leaf: its first triangle in `order`; else the second child, the first being the next node.
+    /// First triangle in `order` for a leaf, else the index of the second child; the first child is the next
+    /// node.
     start: u32,
-    /// Number of triangles of a leaf; 0 where there are children.
+    /// Number of triangles of a leaf; 0 for an inner node.
     count: u32,
 }
 
-/// Boxes about boxes, halved at the middle triangle of the longest side: the depth is the logarithm of the
-/// number of triangles.
+/// A hierarchy of bounding boxes, split at the median triangle along the longest side, so that its depth is
+/// the logarithm of the number of triangles.
 pub(super) struct Tree {
     nodes: Vec<BoxNode>,
-    /// Numbers of triangles, leaf after leaf.
+    /// Indices of triangles, by leaf.
     order: Vec<u32>,
 }
 
 impl Tree {
-    /// A tree over boxes, of which there is at least one.
+    /// A tree over at least one box.
     pub fn new(boxes: &[Aabb]) -> Self {
         let mut tree = Self { nodes: Vec::new(), order: (0..boxes.len() as u32).collect() };
         tree.split(boxes, 0, boxes.len());
@@ -53,15 +54,15 @@ impl Tree {
         self.split(boxes, middle, end);
     }
 
-    /// Calls `visit` for triangles that may be nearer to `point` than the square of a distance that it
-    /// returns, near boxes first.
+    /// Calls `visit` for triangles that may be nearer to `point` than the squared distance returned by
+    /// `visit`, near boxes first.
     pub fn nearest(&self, point: DVec3, mut visit: impl FnMut(u32) -> f64) {
         let square = |node: u32| {
             let bounds = &self.nodes[node as usize].bounds;
             point.distance_squared(point.clamp(bounds.min, bounds.max))
         };
         let mut least = f64::INFINITY;
-        // Two entries are left behind per level, of which there are at most 32.
+        // The stack has two entries per level, of which there are at most 32.
         let mut stack = [(0u32, 0.0f64); 64];
         let mut len = 1;
         while len > 0 {
@@ -87,7 +88,7 @@ impl Tree {
         }
     }
 
-    /// Calls `visit` for the triangles whose leaves `bounds` touches.
+    /// Calls `visit` for the triangles of leaves that intersect `bounds`.
     pub fn touching(&self, bounds: &Aabb, mut visit: impl FnMut(u32)) {
         let mut stack = vec![0u32];
         while let Some(number) = stack.pop() {

@@ -1,8 +1,8 @@
-//! One triangle: nearest point, crossing.
+//! One triangle: nearest point, intersection with a segment.
 
 use glam::DVec3;
 
-/// The part of a triangle on which a nearest point lies.
+/// The feature of a triangle on which a nearest point lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum TrianglePart {
     Face,
@@ -11,9 +11,10 @@ pub(super) enum TrianglePart {
     Corner(usize),
 }
 
-/// The point of triangle `t` that is nearest to `p`, and where on the triangle it is.
+/// The point of triangle `t` that is nearest to `p`, and its feature.
 ///
-/// Ericson, Real-Time Collision Detection (2005), section 5.1.5; triangles without an area are their edges.
+/// Ericson, Real-Time Collision Detection (2005), section 5.1.5; triangles of zero area are treated as their
+/// edges.
 pub(super) fn closest(p: DVec3, [a, b, c]: [DVec3; 3]) -> (DVec3, TrianglePart) {
     let (ab, ac, ap) = (b - a, c - a, p - a);
     let (d1, d2) = (ab.dot(ap), ac.dot(ap));
@@ -50,10 +51,9 @@ pub(super) fn closest(p: DVec3, [a, b, c]: [DVec3; 3]) -> (DVec3, TrianglePart) 
     (a + vb / sum * ab + vc / sum * ac, TrianglePart::Face)
 }
 
-/// Whether the segment from `p` to `q` goes through triangle `t` from one side to the other. An end on the
-/// triangle does not count.
+/// Whether the segment from `p` to `q` crosses triangle `t`. An end point on the triangle does not count.
 pub(super) fn is_pierced([a, b, c]: [DVec3; 3], p: DVec3, q: DVec3) -> bool {
-    // Six times the volume of a tetrahedron, and what round-off may make of none.
+    // Six times the volume of a tetrahedron, and its bound of round-off.
     let size = [b - a, c - a, p - a, q - a].iter().fold(0.0, |size: f64, edge| size.max(edge.length()));
     let nothing = 1e-12 * size.powi(3);
     let volume = |a: DVec3, b: DVec3, c: DVec3, d: DVec3| (b - a).cross(c - a).dot(d - a);

@@ -30,7 +30,8 @@ fn rings_of_a_disc() {
 
 #[test]
 fn ring_and_tube_have_their_second_moment() {
-    // The polar moment of area pi (R^4 - r^4) / 2, with an error that falls with the square of the spacing.
+    // The polar moment of area pi (R^4 - r^4) / 2, with an error that decreases with the square of the
+    // spacing.
     let exact = 0.5 * PI * (1.0 - 0.5f64.powi(4));
     let error = |spacing: f64| {
         let sites = filled("Ring(center: (0, 0), inner: 0.5, outer: 1)", Lattice::Concentric, spacing, Two);

@@ -1,4 +1,4 @@
-//! Rejected shapes: where, and with which message.
+//! Rejected shapes, with the paths and messages of their errors.
 
 use std::path::Path;
 
@@ -327,7 +327,7 @@ fn a_turn_that_leaves_the_range_of_numbers_is_an_error() {
     );
 }
 
-/// Numbers that a slip of the finger or a wrong unit makes.
+/// Numbers that result from a typing error or a wrong unit.
 const ODD: [f64; 12] =
     [0.0, -1.0, 1.0, 0.5, 2.0, 1e-3, 1e-320, 1e16, -1e200, f64::MAX, f64::INFINITY, f64::NAN];
 

@@ -29,7 +29,7 @@ fn the_outermost_layer_is_half_a_spacing_from_any_boundary() {
         let first: Vec<f64> = depths.iter().copied().filter(|depth| *depth < 0.8).collect();
         assert!(first.iter().all(|depth| (depth - 0.5).abs() < 0.02), "{text}: {first:?}");
         assert!(!depths.iter().any(|depth| (0.8..1.0).contains(depth)), "{text}");
-        // One particle of the layer for every spacing of the boundary, more or less.
+        // The layer has about one particle per spacing of the boundary.
         let mean = total(&sites) / sites.len() as f64;
         let volumes = || sites.iter().map(|site| site.volume / mean);
         let (least, most) = (volumes().fold(f64::INFINITY, f64::min), volumes().fold(0.0, f64::max));

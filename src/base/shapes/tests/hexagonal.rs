@@ -4,7 +4,7 @@ use super::{assert_close, filled, total};
 use crate::scene::Dimension::{Three, Two};
 use crate::shapes::{Lattice, Site};
 
-/// Number of particles that have `count` others within `reach`.
+/// Number of particles with `count` others within the distance `reach`.
 fn with_neighbours(sites: &[Site], reach: f64, count: usize) -> usize {
     let near = |a: &Site| sites.iter().filter(|b| a.position.distance(b.position) < reach).count() - 1;
     sites.iter().filter(|site| near(site) == count).count()
@@ -12,7 +12,7 @@ fn with_neighbours(sites: &[Site], reach: f64, count: usize) -> usize {
 
 #[test]
 fn triangles() {
-    // Sides that hold whole cells: a = 1.0746 spacings along x, 0.9306 spacings along y.
+    // Sides that are integer multiples of the cells: a = 1.0746 spacings along x, 0.9306 spacings along y.
     let (a, row) = (1.074569931823542, 0.930604859102100);
     let text = format!("Box(min: (0, 0), max: ({:?}, {:?}))", 20.0 * a, 20.0 * row);
     let sites = filled(&text, Lattice::Hexagonal, 1.0, Two);
@@ -33,7 +33,7 @@ fn close_packing() {
     assert_close(total(&sites), 512.0, 1e-12);
     assert_eq!(with_neighbours(&sites, 0.999 * a, 0), 512);
     assert!(with_neighbours(&sites, 1.001 * a, 12) >= 6 * 6 * 6);
-    // Layers ABAB: every other layer lies exactly above.
+    // Layers ABAB: every second layer lies exactly above.
     let top = 2.0 * a * (2.0f64 / 3.0).sqrt();
     let above = |a: &Site| {
         sites.iter().any(|b| (b.position - a.position - glam::DVec3::new(0.0, 0.0, top)).length() < 1e-9)

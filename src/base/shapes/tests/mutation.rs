@@ -1,4 +1,4 @@
-//! Damaged meshes and particle files: any content gives a result or an error. `PROPTEST_CASES` sets the
+//! Damaged meshes and particle files: any content must give a result or an error. `PROPTEST_CASES` sets the
 //! number of cases.
 
 use proptest::prelude::*;
@@ -32,7 +32,7 @@ fn binary() -> Vec<u8> {
     bytes
 }
 
-/// Fills a body from a file with this content; an error is an answer.
+/// Fills a body from a file with this content; an error is a valid result.
 fn survives(name: &str, content: &[u8]) {
     let folder = tempfile::tempdir().expect("a temporary folder");
     std::fs::write(folder.path().join(name), content).expect("a file");
@@ -98,7 +98,7 @@ fn particles_at_the_ends_of_numbers() {
     }
 }
 
-/// Few in the continuous integration; as many as asked for in a hunt.
+/// Few cases in continuous integration, more by `PROPTEST_CASES`.
 fn cases() -> u32 {
     std::env::var("PROPTEST_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(64)
 }

@@ -15,7 +15,7 @@ fn visits_octants_one_after_another() {
     let mut seen = order.clone();
     seen.sort_unstable();
     assert!(seen.into_iter().eq(0..512));
-    // Bit by bit: place n of the curve has x in bits 0, 3, 6 of n, y in 1, 4, 7, z in 2, 5, 8.
+    // Bitwise: position n of the curve has x in bits 0, 3, 6 of n, y in 1, 4, 7, z in 2, 5, 8.
     for (n, &point) in order.iter().enumerate() {
         let axis = |k: usize| (0..3).map(|bit| (n >> (3 * bit + k) & 1) << bit).sum::<usize>() as f64;
         let expected = 0.1 * DVec3::new(axis(0), axis(1), axis(2)) - DVec3::splat(0.3);
@@ -27,7 +27,7 @@ fn visits_octants_one_after_another() {
 fn any_points() {
     assert!(morton_order(&[], 1.0).is_empty());
     assert_eq!(morton_order(&[DVec3::X; 3], 1.0), [0, 1, 2]);
-    // Far apart compared with the cell: still a permutation, and x alone decides.
+    // Points far apart compared with the cell: still a permutation, ordered by x alone.
     assert_eq!(morton_order(&[DVec3::X * 1e30, DVec3::ZERO, DVec3::X * 5e29], 1e-3), [1, 2, 0]);
 }
 

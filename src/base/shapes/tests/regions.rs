@@ -1,4 +1,4 @@
-//! Which points a shape contains, its bounds, its distance.
+//! Point membership, bounds and signed distance of shapes.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ fn region(text: &str, dimension: Dimension) -> Box<dyn Region> {
     shape(text).region(dimension, Path::new(""), "shape").unwrap()
 }
 
-/// Shapes with a second, plain statement of what is inside.
+/// Shapes with a second, naive inside test.
 type Inside = fn(DVec3) -> bool;
 const PLANE: [(&str, Inside); 9] = [
     ("Intersection([HalfSpace(point: (0, 0.1), normal: (1, 1)), Box(min: (-1, -1), max: (1, 1))])", |p| {
@@ -72,7 +72,8 @@ proptest! {
 
     #[test]
     fn distance_is_never_more_than_the_true_one(p in [-1.5..1.5, -1.5..1.5, -1.5..1.5], q in [-1.5..1.5, -1.5..1.5, -1.5..1.5]) {
-        // Holds exactly if going from any point p by any step changes the distance by at most its length.
+        // A distance that never exceeds the true one is Lipschitz continuous with constant 1: a step from any
+        // point p changes it by at most the length of the step, and vice versa.
         let (p, q) = (DVec3::from_array(p), DVec3::from_array(q));
         for (text, _) in SPACE {
             let region = region(text, Three);
@@ -123,7 +124,7 @@ fn what_takes_an_end_away_moves_the_bounds() {
     assert_eq!(bounds("HalfSpace(point: (3, 0.5), normal: (0, 2))"), arch);
     assert_eq!(bounds("Box(min: (-2, -9), max: (2, 0.5))"), arch);
     assert_eq!(bounds("Box(min: (0.5, -9), max: (9, 9))"), [-2.0, -2.0, 0.5, 2.0]);
-    // Something of the ring is left beside these, at every end.
+    // Part of the ring remains beside these holes, at every end.
     let whole = [-2.0, -2.0, 2.0, 2.0];
     assert_eq!(bounds("Box(min: (-1.9, -9), max: (2, 0.5))"), whole);
     assert_eq!(bounds("Box(min: (-9, -0.1), max: (9, 0.1))"), whole);
@@ -142,7 +143,7 @@ fn volumes_of_nested_boxes_are_exact() {
     assert!((region(&both, Three).volume().unwrap() - 120.0).abs() < 1e-10);
 }
 
-/// A hole that ends where the body ends is open there: nothing is between the two faces.
+/// A hole that ends at a face of the body is open there: there is no material between the two faces.
 #[test]
 fn a_hole_through_a_body_has_no_lid() {
     let channel = region("Difference(Box(min: (0, -2), max: (8, 3)), Box(min: (0, 0), max: (8, 1)))", Two);
@@ -161,7 +162,7 @@ fn a_hole_through_a_body_has_no_lid() {
     // Before, at and behind the ends, and far from them.
     for x in [1e-4, 0.03, 0.3, 4.0, 7.97, 7.9999, 8.0001, 8.03, -0.02] {
         for y in [0.02, 0.3, 0.5, 0.9] {
-            // Beyond the ends from their edges.
+            // Beyond the ends, distances are those from the edges.
             let side = f64::min(y, 1.0 - y).hypot(f64::max(0.0, f64::max(x - 8.0, -x)));
             let found = [channel.clearance(DVec3::new(x, y, 0.0)), turned.clearance(turn(x, y))];
             assert!(found.iter().all(|d| (d - side).abs() < 1e-6), "{x} {y}: {found:?} and {side}");
@@ -174,12 +175,12 @@ fn a_hole_through_a_body_has_no_lid() {
             assert!((found - side).abs() < 1e-6, "{x} {r}: {found}");
         }
     }
-    // In the material nothing changes.
+    // Distances inside the material are unchanged.
     assert_eq!(channel.clearance(DVec3::new(0.5, -1.0, 0.0)), -0.5);
 }
 
 /// A slit in the floor of a tank, in the two orders and as one hole of two parts: the distance is that from
-/// the corners of the slit or its sides, and crossing the lines along which the sides go on it does not jump.
+/// the corners or sides of the slit, and it is continuous across the extensions of the sides.
 #[test]
 fn a_slit_in_a_floor_is_open_and_has_no_sides_above_it() {
     let (outer, tank, slit) = (

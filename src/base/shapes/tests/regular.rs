@@ -138,7 +138,7 @@ fn combinations_without_closed_form_are_good_to_a_part_in_a_thousand() {
     let plate = "Difference(Box(min: (0, 0), max: (1, 1)), Sphere(center: (0, 0), radius: 0.5))";
     assert_close(total(&square(plate, 0.05)), 1.0 - PI / 16.0, 1e-5);
     let turned = "Difference(Box(min: (0, 0), max: (1, 1)), Rotate(shape: Box(min: (0, 0), max: (1, 1)), angle_degrees: 45))";
-    // Half of the square, and the corner beyond x + y = sqrt(2) of the other half.
+    // Half of the square, and the corner of the other half beyond x + y = sqrt(2).
     let corner = (2.0 - 2f64.sqrt()).powi(2) / 4.0;
     assert_close(total(&square(turned, 0.05)), 0.5 + corner, 2e-5);
 }

@@ -1,4 +1,4 @@
-//! Irregular packings: evenness, volumes, repeatability.
+//! Irregular packings: uniformity, volumes, reproducibility.
 
 use std::f64::consts::PI;
 
@@ -55,7 +55,7 @@ fn volumes_add_up_to_the_shape() {
 
 #[test]
 fn volumes_are_those_of_voronoi_cells() {
-    // Against a sum over all points for every sample of a much finer grid.
+    // Compared with a search over all points for every sample of a much finer grid.
     let cube = "Box(min: (0, 0, 0), max: (1, 1, 1))";
     for (sites, samples, layers) in
         [(relaxed(SQUARE, 5, 3, 0.1, Two), 500, 1), (relaxed(cube, 5, 3, 0.25, Three), 80, 80)]
@@ -78,7 +78,8 @@ fn volumes_are_those_of_voronoi_cells() {
 
 #[test]
 fn lloyd_moves_particles_towards_their_centroids() {
-    // What Lloyd's method lowers: the integral of the squared distance to the nearest particle.
+    // The functional that Lloyd's method reduces: the integral of the squared distance to the nearest
+    // particle.
     let energy = |iterations| {
         let sites = relaxed(SQUARE, 2, iterations, 0.1, Two);
         let point = |n: usize| DVec3::new((n % 200) as f64 + 0.5, (n / 200) as f64 + 0.5, 0.0) / 200.0;

@@ -1,5 +1,5 @@
-//! Nearest points of surfaces: closed forms at faces, edges, corners and inside; properties that any surface
-//! has.
+//! Nearest points of surfaces: closed forms at faces, edges, corners and inside; general properties of
+//! surfaces.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ fn surface(text: &str, dimension: Dimension) -> Box<dyn Surface> {
     shape(text).surface(dimension, Path::new(""), "shape").unwrap()
 }
 
-/// Asks for a point and states the signed distance, the nearest point and the normal.
+/// Compares the signed distance, the nearest point and the normal for a query point.
 fn assert_closest(surface: &dyn Surface, asked: [f64; 3], distance: f64, point: [f64; 3], normal: [f64; 3]) {
     let found = surface.closest(asked.into());
     let normal = DVec3::from(normal).normalize();
@@ -30,13 +30,13 @@ fn of_a_box() {
     assert_closest(cube, [0.5, 3.0, 0.2], 2.0, [0.5, 1.0, 0.2], [0.0, 1.0, 0.0]);
     assert_closest(cube, [0.5, 0.9, 0.2], -0.1, [0.5, 1.0, 0.2], [0.0, 1.0, 0.0]);
     assert_closest(cube, [-0.75, 0.5, 0.2], -0.25, [-1.0, 0.5, 0.2], [-1.0, 0.0, 0.0]);
-    // An edge, a corner: from outside along the line to it, on it the mean of the faces.
+    // An edge and a corner: from outside the normal is along the line to it, on it the mean of the faces.
     assert_closest(cube, [4.0, 5.0, 0.0], 5.0, [1.0, 1.0, 0.0], [3.0, 4.0, 0.0]);
     assert_closest(cube, [1.0, 1.0, 0.3], 0.0, [1.0, 1.0, 0.3], [1.0, 1.0, 0.0]);
     assert_closest(cube, [-2.0, 2.0, -2.0], 3f64.sqrt(), [-1.0, 1.0, -1.0], [-1.0, 1.0, -1.0]);
     assert_closest(cube, [-1.0, 1.0, -1.0], 0.0, [-1.0, 1.0, -1.0], [-1.0, 1.0, -1.0]);
     assert_closest(cube, [0.2, 0.3, -1.0], 0.0, [0.2, 0.3, -1.0], [0.0, 0.0, -1.0]);
-    // The centre is equally near to six faces: the first axis.
+    // The centre is equidistant from six faces: the first axis is chosen.
     assert_closest(cube, [0.0; 3], -1.0, [1.0, 0.0, 0.0], [1.0, 0.0, 0.0]);
     let rectangle = surface("Box(min: (0, 0), max: (4, 1))", Two);
     assert_closest(rectangle.as_ref(), [2.0, 0.4, 0.0], -0.4, [2.0, 0.0, 0.0], [0.0, -1.0, 0.0]);
@@ -68,7 +68,7 @@ fn of_round_shapes() {
 
 #[test]
 fn of_polygons_and_prisms() {
-    // An L: one corner that points in, at (1, 1); both ways round.
+    // An L-shape with one concave corner at (1, 1), in both orientations.
     let corners =
         ["(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)", "(0, 2), (1, 2), (1, 1), (2, 1), (2, 0), (0, 0)"];
     for corners in corners {
@@ -99,7 +99,7 @@ fn of_planes_and_of_what_is_moved() {
             shape: Scale(by: (2, 2, 2), shape: Cylinder(from: (0, 0, 0), to: (0, 0, 4), radius: 1))))",
         Three,
     );
-    // The axis goes from (0, 0, 1) to (0, -8, 1), the radius is 2.
+    // The axis extends from (0, 0, 1) to (0, -8, 1), the radius is 2.
     assert_closest(turned.as_ref(), [0.0, -5.0, 4.0], 1.0, [0.0, -5.0, 3.0], [0.0, 0.0, 1.0]);
     assert_closest(turned.as_ref(), [1.0, -0.25, 1.0], -0.25, [1.0, 0.0, 1.0], [0.0, 1.0, 0.0]);
 }
@@ -155,7 +155,7 @@ proptest! {
         for text in SPACE {
             let surface = surface(text, Three);
             let found = surface.closest(p);
-            // The distance of the region is a second formula for the same number.
+            // The distance of the region is a second formula for the same quantity.
             prop_assert!((found.signed_distance - surface.distance(p)).abs() < 1e-12, "{} {:?}", text, found);
             prop_assert!((found.normal.length() - 1.0).abs() < 1e-12, "{} {:?}", text, found);
             let foot = found.point + found.signed_distance * found.normal;

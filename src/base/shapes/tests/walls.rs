@@ -23,7 +23,7 @@ fn wall(text: &str, dimension: Dimension) -> Vec<Site> {
     .unwrap()
 }
 
-/// Distance of the particle that is nearest to a place of the surface, along an axis.
+/// Distance along an axis of the particle that is nearest to a point of the surface.
 fn first(sites: &[Site], at: DVec3, axis: usize) -> f64 {
     let beside = |site: &&Site| {
         let x = site.position - at;
@@ -45,7 +45,7 @@ fn cells_end_at_the_cavity_whatever_is_outside() {
     }
     let text = "Rotate(shape: Difference(Box(min: (-0.07, -0.07, -0.07), max: (0.37, 0.4, 0.27)), Box(min: (0, 0, 0), max: (0.3, 0.3, 0.2))), axis: (0, 0, 1), angle_degrees: 90)";
     let sites = wall(text, Dimension::Three);
-    // The floor y = 0 of the cavity is the plane x = 0 after the turn.
+    // The floor y = 0 of the cavity is the plane x = 0 after the rotation.
     let distance = first(&sites, DVec3::new(0.0, 0.15, 0.1), 0);
     assert!((distance - 0.01).abs() < 1e-9, "{distance}");
 }
@@ -94,7 +94,7 @@ fn cells_end_at_all_cavities_that_have_one_lattice() {
             assert!((distance - 0.01).abs() < 1e-9, "{text} {at:?}: {distance}");
         }
     }
-    // No lattice ends at both: it stays that of the outer box.
+    // No lattice ends at both, so the lattice remains that of the outer box.
     let slit = "Box(min: (0.111, -1), max: (0.2, 0))";
     let sites = wall(&format!("Difference({outer}, Union([{left}, {slit}]))"), Dimension::Two);
     assert!((first(&sites, DVec3::new(-0.07, 0.2, 0.0), 0) - 0.01).abs() < 1e-9);

@@ -1,4 +1,4 @@
-//! Volumes, centres, second moments and sharp edges of meshes, beside closed forms.
+//! Volumes, centres, second moments and sharp edges of meshes against closed forms.
 
 use glam::DMat3;
 
@@ -49,7 +49,8 @@ fn moments_of_a_ball_are_approached_to_second_order() {
 
 #[test]
 fn sharp_edges_are_those_between_faces_at_an_angle() {
-    // Twelve edges of a box, four of each length, and its eight corners; the diagonals of its faces are none.
+    // Twelve edges of a box, four of each length, and its eight corners; the diagonals of its faces are not
+    // sharp edges.
     let edges = solid(&cube(DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0))).edges(1.0);
     let mut lengths: Vec<f64> = edges.iter().map(|[a, b]| a.distance(*b)).collect();
     lengths.sort_by(f64::total_cmp);
