@@ -1,5 +1,5 @@
-//! The acceleration of a rigid body as far as its motion is prescribed: what a fluid beside it can know
-//! before it has pushed the body.
+//! Prescribed part of the acceleration of a rigid body. It does not depend on the forces of the step, so that
+//! the pressure of a fluid on the body can include it.
 
 use glam::DVec3;
 
@@ -11,15 +11,15 @@ use super::constraint::Turning;
 pub struct PrescribedAcceleration {
     /// Centre of mass, m.
     center: DVec3,
-    /// That of the centre along the axes that are driven, m/s2.
+    /// Acceleration of the centre along the driven axes, m/s2.
     linear: DVec3,
-    /// That of a rotation that is driven, 1/s2, and the angular velocity of it, 1/s.
+    /// Angular acceleration, 1/s2, and angular velocity, 1/s, of a driven rotation.
     angular: DVec3,
     spin: DVec3,
 }
 
 impl PrescribedAcceleration {
-    /// That of the point at `place`, m/s2.
+    /// Prescribed acceleration of the point at `place`, m/s2.
     #[inline]
     pub fn at(&self, place: DVec3) -> DVec3 {
         let arm = place - self.center;
@@ -28,7 +28,7 @@ impl PrescribedAcceleration {
 }
 
 impl RigidBody {
-    /// That of this step; none where nothing is prescribed.
+    /// The prescribed acceleration in this step; none where no motion is prescribed.
     pub fn prescribed_acceleration(&self) -> Option<PrescribedAcceleration> {
         let turns = matches!(self.constraint.turning, Turning::Driven(_));
         if self.state.gone || !(turns || self.constraint.free_axes() != DVec3::ONE) {
@@ -39,8 +39,8 @@ impl RigidBody {
         Some(PrescribedAcceleration { center: self.state.center, linear, angular, spin })
     }
 
-    /// Takes what drives have added to its velocities within `half` a step, s, since they were `before`, of
-    /// the centre and of the rotation.
+    /// Stores the changes of its velocities by prescribed motions over `half` a step, s; `before` are the
+    /// velocities of the centre, m/s, and of the rotation, 1/s, at its start.
     pub(super) fn note_drives(&mut self, before: [DVec3; 2], half: f64) {
         let per_time = if half > 0.0 { half.recip() } else { 0.0 };
         let turns = matches!(self.constraint.turning, Turning::Driven(_));

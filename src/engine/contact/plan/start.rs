@@ -12,15 +12,16 @@ use crate::rigid::{RigidBodies, RigidBody};
 use crate::schedule::StepError;
 use crate::skins::{Skin, SkinColumns};
 
-/// A body that must not start inside a rigid one.
+/// A body that must not start inside a rigid one, and the parts of it that are checked.
 enum ContactStart {
-    /// With its nodes.
+    /// Its nodes.
     Nodes(ContactSides),
-    /// With its skin and its particles.
+    /// Its skin, and the centres of its particles.
     Skin(Arc<Skin>, ContactSides),
 }
 
-/// How deep the skin, and the centre of a particle, may be inside at the start, over the spacing.
+/// Depth of a vertex of the skin, or of the centre of a particle, inside the rigid body from which on the
+/// start is refused, over the spacing: as deep as half of a radius, the limit of contact by particles.
 const SKIN_SHARE: f64 = 0.25;
 
 /// Adds the check that no body starts inside a rigid one; `numbers` are those of the contacts in the scene.
@@ -52,7 +53,7 @@ impl ContactStart {
         }
     }
 
-    /// What of the body is inside the other one, and where, m.
+    /// The part of the body that is inside the rigid one, by name, and its place, m; none if there is none.
     fn inside(&self, setup: &Setup<'_>) -> Result<Option<(&'static str, DVec3)>, StepError> {
         let bodies = setup.resources.get::<RigidBodies>();
         let sides = self.sides();

@@ -1,12 +1,12 @@
-//! What an update changes of the internal forces.
+//! Change of the internal forces by an update of the reference.
 //!
-//! The motion up to an update has used the forces of the reference before it, and so does the second kick of
-//! that step; those of the new reference act from the next kick on. On either side of the update the leapfrog
-//! then is that of one reference, and an update takes nothing from the motion. Were the second kick one by
-//! the new forces, its work would not be that of any energy.
+//! The second kick of the step of an update uses the forces of the old reference, as the motion before it
+//! did; the forces of the new reference act from the next kick on. The leapfrog before and after the update
+//! thus has one reference each, and the update does no work on the motion. With the new forces, the work of
+//! the second kick would not be the change of any energy.
 //!
-//! What has lost particles gets the new forces at once, and the difference is booked: forces between what has
-//! been removed or has failed and what is left must end together.
+//! Bodies that have lost particles use the new forces at once, and the difference is booked: the forces
+//! between removed or failed particles and their neighbours must end together.
 
 use std::ops::Range;
 
@@ -14,23 +14,23 @@ use crate::parallel::for_each_block;
 use crate::schedule::{Run, Shared, Step, StepError};
 use crate::world::{Force, PhaseId};
 
-/// The change, of all rows of the phase.
+/// The change of the forces on all rows of the phase.
 #[derive(Default)]
 pub(super) struct ForceChange {
     /// New forces less those of the second kick, N.
     change: Vec<Force>,
-    /// Whether the update of this step has left one.
+    /// Whether an update of this step has written it.
     is_new: bool,
 }
 
 impl ForceChange {
-    /// There is no change yet.
+    /// Discards the change: none is left to apply.
     pub fn forget(&mut self) {
         self.is_new = false;
     }
 
-    /// Notes the change from `before` to `after`, N, and makes `after` the forces of the second kick: the old
-    /// ones, but the new ones of the rows that are `at_once`.
+    /// Stores the change from `before` to `after`, N, and sets `after` to the forces of the second kick:
+    /// those of the old reference, and of the new one in the rows `at_once`.
     pub fn note(
         &mut self,
         before: &[Force],
@@ -44,7 +44,7 @@ impl ForceChange {
         self.is_new = true;
     }
 
-    /// Takes the change back from the forces of the new reference, N.
+    /// Subtracts the change from the forces of the new reference, N.
     pub fn take_back(&self, force: &mut [Force]) {
         self.apply(force, -1.0);
     }
@@ -60,7 +60,7 @@ impl ForceChange {
     }
 }
 
-/// The system that goes on to the new forces once the second kick is done.
+/// The system that applies the change after the second kick.
 pub(super) struct ChangeForces {
     pub phase: PhaseId,
     pub change: Shared<ForceChange>,
