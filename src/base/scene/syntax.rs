@@ -11,7 +11,7 @@ const MAX_DEPTH: usize = 100;
 
 /// Reads one value that fills `text`; all places are counted from `offset`.
 pub(super) fn read(text: &str, offset: usize) -> Result<Node, Problem> {
-    let mut reader = Reader { text, offset, at: 0, depth: 0 };
+    let mut reader = Reader { text, offset, at: 0, depth: 0, last_text: 0..0 };
     reader.skip_attributes()?;
     let node = reader.value()?;
     reader.skip_space()?;
@@ -28,6 +28,8 @@ pub(super) struct Reader<'a> {
     pub(super) offset: usize,
     pub(super) at: usize,
     depth: usize,
+    /// Bytes of the last text in quotes.
+    last_text: Range<usize>,
 }
 
 impl<'a> Reader<'a> {
@@ -151,6 +153,7 @@ impl<'a> Reader<'a> {
             }
             Some('"') => {
                 let text = self.quoted()?;
+                self.last_text = start..self.at;
                 unnamed(self, start, text)
             }
             Some('r') if rest.starts_with("r\"") || rest.starts_with("r#") => {
@@ -244,15 +247,31 @@ impl<'a> Reader<'a> {
                 Some(',') => self.at += 1,
                 Some(c) if c == close => break,
                 None | Some(')' | ']' | '}') => return Err(self.unclosed(open, close)),
-                Some(_) => {
-                    let problem = self.unexpected(&format!("`,` or `{close}`"));
-                    let help = slips::after_number(&self.text[..self.at], self.rest());
-                    return Err(problem.helps(help));
-                }
+                Some(_) => return Err(self.not_separated(open, close)),
             }
         }
         self.at += 1;
         Ok(entries)
+    }
+
+    /// After an entry of the bracket at `open` comes neither a comma nor its end.
+    fn not_separated(&self, open: usize, close: char) -> Problem {
+        let bracket = &self.text[open..open + 1];
+        let text = self.last_text.clone();
+        if self.text[text.clone()].contains('\n') && self.text[text.end..self.at].trim().is_empty() {
+            return self
+                .problem(text.start..text.start + 1, "this text is never closed")
+                .help("close it with `\"` in its line: it goes on to the next `\"`");
+        }
+        if self.peek() == Some(':') && !self.rest().starts_with("::") {
+            let before = self.text[..self.at].trim_end();
+            let field = &before[before.trim_end_matches(is_word).len()..];
+            return self
+                .problem(open..open + 1, format!("this `{bracket}` is never closed"))
+                .help(format!("a `{close}` is missing before the field `{field}`"));
+        }
+        let problem = self.unexpected(&format!("`,` or `{close}`"));
+        problem.helps(slips::after_number(&self.text[..self.at], self.rest()))
     }
 
     /// The bracket at `open` is still open where the text or an outer bracket ends.
