@@ -93,17 +93,33 @@ impl RowPass<4, 3> for Responses<'_> {
     }
 }
 
-/// Changes the velocities of a body; returns the kinetic energy that they lose, J.
+/// Changes the velocities of a body; returns the kinetic energy that they lose, J. The mean over the body of
+/// what particles gain by other places is not zero, so each gives up a part of its momentum in proportion to
+/// the magnitude of its own change: momentum stays, and what is lost is the same in every frame.
 pub fn change_velocity(step: &Step<'_>, id: BodyId, responses: &[ShiftResponse]) -> Result<f64, StepError> {
     let (view, rows) = step.world.body_view(id);
     let mut velocity = view.write::<Velocity>()?;
     let (mass, removed) = (view.read::<Mass>()?, view.read::<Removed>()?);
-    let slices = (&mut velocity[rows.clone()], &responses[rows.clone()], &mass[rows.clone()], &removed[rows]);
+    let (responses, mass, removed) = (&responses[rows.clone()], &mass[rows.clone()], &removed[rows.clone()]);
+    let slices = (responses, mass, removed);
+    type Gains<'a> = (&'a [ShiftResponse], &'a [Mass], &'a [Removed]);
+    let (gain, magnitude): (DVec3, f64) =
+        sum_over_blocks(slices, &|_, (responses, mass, removed): Gains<'_>| {
+            let (mut gain, mut magnitude) = (DVec3::ZERO, 0.0);
+            for k in (0..mass.len()).filter(|&k| removed[k] == Removed::NO) {
+                gain += mass[k].0 * responses[k].velocity;
+                magnitude += mass[k].0 * responses[k].velocity.length();
+            }
+            (gain, magnitude)
+        });
+    let excess = if magnitude > 0.0 { gain / magnitude } else { DVec3::ZERO };
+    let slices = (&mut velocity[rows], responses, mass, removed);
     type Rows<'a> = (&'a mut [Velocity], &'a [ShiftResponse], &'a [Mass], &'a [Removed]);
     Ok(sum_over_blocks(slices, &|_, (velocity, responses, mass, removed): Rows<'_>| {
         let mut lost = 0.0;
         for k in (0..velocity.len()).filter(|&k| removed[k] == Removed::NO) {
             let (v, change) = (velocity[k].0, responses[k].velocity);
+            let change = change - change.length() * excess;
             lost -= mass[k].0 * change.dot(v + 0.5 * change);
             velocity[k].0 = v + change;
         }

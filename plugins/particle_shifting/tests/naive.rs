@@ -214,7 +214,7 @@ fn naive(state: &State) -> Shifted {
     let shift = |j: usize| if j < fluid && inside[j] { locals[j].shift } else { DVec2::ZERO };
     let mut out = Shifted {
         displacement: (0..fluid).map(|i| shift(i).extend(0.0)).collect(),
-        velocity: state.velocity[..fluid].to_vec(),
+        velocity: vec![DVec3::ZERO; fluid],
         pending: vec![0.0; fluid],
         density: vec![0.0; fluid],
         inside: inside.clone(),
@@ -241,6 +241,16 @@ fn naive(state: &State) -> Shifted {
         let change = (dt * locals[i].rate).min(1.0) * beyond - share * due;
         out.density[i] = state.density[i] * change / (1.0 - 0.5 * change);
     }
+    for body in 0..2 {
+        let own: Vec<usize> = (0..fluid).filter(|&i| state.bodies[i] == body).collect();
+        let momentum: DVec3 = own.iter().map(|&i| state.mass[i] * out.velocity[i]).sum();
+        let magnitude: f64 = own.iter().map(|&i| state.mass[i] * out.velocity[i].length()).sum();
+        for i in own {
+            let share = out.velocity[i].length() / magnitude;
+            out.velocity[i] -= momentum * share;
+        }
+    }
+    out.velocity.iter_mut().zip(&state.velocity).for_each(|(v, before)| *v += *before);
     for body in (0..2).filter(|&body| state.taken[body] < 0.0) {
         let changes = pairs.friction(body, -state.taken[body]);
         out.velocity.iter_mut().zip(changes).for_each(|(v, change)| *v += change);

@@ -10,7 +10,7 @@ use meshless_engine::glam::DVec3;
 use meshless_engine::plugin::Registry;
 use meshless_engine::scene::{Source, parse};
 use meshless_engine::simulation::Simulation;
-use meshless_engine::world::{Density, Position, Velocity};
+use meshless_engine::world::{Density, Mass, Position, Velocity};
 use periodic_flow::{VORTICES, column};
 
 fn simulation(plugins: &str, lattice: &str, velocity: &str) -> Simulation {
@@ -56,6 +56,23 @@ fn vortices_leave_the_particles_even() {
     };
     let (with, without) = (run("particle_shifting()"), run(""));
     assert!(with > 0.65 && with > without + 0.05, "{with} {without}");
+}
+
+/// In a box that is periodic along both axes nothing acts from outside.
+#[test]
+fn momentum_stays() {
+    let mut sim = simulation("particle_shifting()", "Square", VORTICES);
+    let momentum = |sim: &Simulation| {
+        let (v, m) = (column::<Velocity>(sim), column::<Mass>(sim));
+        v.iter().zip(&m).map(|(v, m)| m.0 * v.0).sum::<DVec3>()
+    };
+    let largest = column::<Velocity>(&sim).iter().map(|v| v.0.length()).fold(0.0, f64::max);
+    let mass: f64 = column::<Mass>(&sim).iter().map(|m| m.0).sum();
+    let before = momentum(&sim);
+    sim.run(|sim| sim.clock().time < 0.2).expect("a run");
+    let change = (momentum(&sim) - before).length() / (mass * largest);
+    println!("{change:e}");
+    assert!(change < 1e-9, "{change}");
 }
 
 #[test]
