@@ -30,7 +30,7 @@ pub struct PictureArguments {
     force: bool,
 }
 
-/// Least and largest number of pixels of a side.
+/// Range of the number of pixels of a side.
 const SIDES: std::ops::RangeInclusive<usize> = 64..=8192;
 
 fn size(text: &str) -> Result<(usize, usize), String> {

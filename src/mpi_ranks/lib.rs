@@ -1,4 +1,4 @@
-//! The ranks of a run as processes of MPI. The engine knows their trait `Ranks` alone.
+//! The ranks of a run as MPI processes. The engine knows only their trait `Ranks`.
 #![cfg(feature = "mpi")]
 
 use std::cell::RefCell;
@@ -11,7 +11,7 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, CommunicatorCollectives};
 use thiserror::Error;
 
-/// Largest number of bytes in one exchange: MPI counts in i32.
+/// Maximum number of bytes in one exchange: MPI counts in i32.
 const MOST: usize = 1 << 30;
 
 /// MPI cannot be used.
@@ -28,7 +28,7 @@ pub enum StartError {
 /// The processes that `mpirun` has started.
 pub struct MpiRanks {
     world: SimpleCommunicator,
-    /// The part of this rank on its way: MPI wants it beside the place where all are put together.
+    /// Send buffer: MPI requires it to be separate from the receive buffer.
     own: RefCell<Vec<u8>>,
     /// Ends MPI when the run is over.
     _universe: Universe,
@@ -86,7 +86,7 @@ impl Ranks for MpiRanks {
         if bytes.len() < MOST {
             return self.share_at_once(bytes, cuts);
         }
-        // In rounds, in each of which every rank gives the next piece of its part.
+        // In rounds, in each of which every rank sends the next piece of its part.
         let size = self.size();
         let piece = MOST / size;
         let longest = cuts.windows(2).map(|pair| pair[1] - pair[0]).max().unwrap_or(0);

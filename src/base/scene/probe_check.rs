@@ -1,9 +1,9 @@
-//! Errors of the probes of a scene that are found before anything is built.
+//! Checks of the probes of a scene before anything is built.
 
 use super::requirements::{in_plane, positive_time, twice, unknown_body, usable_name};
 use super::{Probe, Problem, Quantity, Scene, Take};
 
-/// Places on a line, at most.
+/// Maximum number of points on a line.
 const MOST_PLACES: u32 = 1000;
 
 /// Checks all probes.
@@ -47,7 +47,7 @@ pub(super) fn check(scene: &Scene, problems: &mut Vec<Problem>) {
     }
 }
 
-/// Problem of the place where a probe measures.
+/// Problem with the position of a probe.
 fn place(probe: &Probe, i: usize) -> Option<Problem> {
     let places = [probe.on.is_some(), probe.at.is_some(), probe.line.is_some()];
     let (field, message) = match (places, &probe.quantity) {
@@ -72,7 +72,7 @@ fn place(probe: &Probe, i: usize) -> Option<Problem> {
     ))
 }
 
-/// Problem of the other fields of a probe.
+/// Problem with the other fields of a probe.
 fn options(probe: &Probe, i: usize) -> Option<Problem> {
     let is_of_field = probe.quantity.at_point().is_none();
     let extreme = matches!(probe.take, Some(Take::Minimum | Take::Maximum));

@@ -1,11 +1,11 @@
-//! A measurement in a process of its own: its memory is its own, and no earlier case has shaped the heap.
+//! A measurement in a process of its own, so that its memory does not depend on earlier cases.
 
 use std::process::{Command, Stdio};
 
 use super::super::failure::CommandFailure;
 use super::measure::{BenchSetUp, Measurement};
 
-/// Calls this program with the one set-up and reads its measurement.
+/// Runs one set-up in a new process of this program and reads its measurement.
 pub fn take(set_up: &BenchSetUp<'_>, instructions: Option<&str>) -> Result<Measurement, CommandFailure> {
     let BenchSetUp { case, particles, ranks, threads, least } = *set_up;
     let failed = |error: &dyn std::fmt::Display| CommandFailure::Run(format!("{}: {error}", case.name));

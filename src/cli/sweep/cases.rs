@@ -7,7 +7,7 @@ pub struct SweepCase {
     pub settings: Vec<(String, String)>,
 }
 
-/// More runs than this are a slip more often than not.
+/// Maximum number of runs: more are most likely a mistake.
 const MOST: usize = 10_000;
 
 /// Every combination of the values, the last setting changing fastest.
@@ -60,7 +60,7 @@ pub fn short(path: &str) -> &str {
     path.strip_prefix("parameters.").unwrap_or(path)
 }
 
-/// The parts between commas that stand in no brackets and no quotes.
+/// The parts between commas outside of brackets and quotes.
 fn split(values: &str) -> Vec<&str> {
     let mut parts = Vec::new();
     let (mut depth, mut quoted, mut start) = (0i32, false, 0);

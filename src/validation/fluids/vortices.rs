@@ -21,9 +21,9 @@ pub(crate) const CASE: Case = Case {
     run: vortices,
 };
 
-/// Tolerance of the kinetic energy at 100 across; it is in proportion to the spacing.
+/// Tolerance of the kinetic energy at 100 across, proportional to the spacing.
 const ENERGY: f64 = 0.015;
-/// Tolerance of the effective viscosity with ten spacings in the core, in proportion to the spacing.
+/// Tolerance of the effective viscosity with ten spacings in the core, proportional to the spacing.
 const VISCOSITY: f64 = 0.03;
 
 fn vortices(registry: &Registry, across: usize) -> Result<Vec<Check>> {
@@ -66,7 +66,7 @@ fn taylor_green(registry: &Registry, across: usize, reynolds: f64, lattice: &str
         "1",
         "exp(-16 pi^2 t / Re), exact solution",
     );
-    // What breaks up a square lattice does not depend on the spacing.
+    // The break-up of a square lattice does not depend on the spacing.
     Ok(if lattice == "Square" { check } else { check.converging() })
 }
 
@@ -106,7 +106,7 @@ fn lamb_oseen(registry: &Registry, across: usize) -> Result<Check> {
     Ok(check.converging())
 }
 
-/// Where a function has its least value, by sections.
+/// Position of the minimum of a function, by trisection.
 fn least(of: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     for _ in 0..60 {
         let third = (high - low) / 3.0;
