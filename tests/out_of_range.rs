@@ -215,8 +215,8 @@ fn contact_and_tools() {
     each("contact", &pattern, &[("friction", "-0.1"), ("restitution", "-0.1"), ("restitution", "1.1")]);
     each("tool", "Rigid({})", &[("mass", "0.0"), ("mass", "-1.0"), ("spin", "(1.0, 0.0, 0.0)")]);
     each("tool", "Rigid({})", &[("rotation", "About(0.0, 0.0, 0.0)")]);
-    let turn = r#"Turn(on: Select(body: "tool"), rate: 1.0, {})"#;
-    each("condition", turn, &[("axis", "(1.0, 0.0, 0.0)"), ("axis", "(0.0, 0.0, 0.0)")]);
+    let rotation = r#"RotationRate(on: Select(body: "tool"), rate: 1.0, {})"#;
+    each("condition", rotation, &[("axis", "(1.0, 0.0, 0.0)"), ("axis", "(0.0, 0.0, 0.0)")]);
     let range = [("support", "1.0"), ("support", "20.0"), ("neighbors", "2"), ("neighbors", "4000")];
     each("formulation", "TotalLagrangian({})", &range);
     // The second body of a formulation is another place than the first.

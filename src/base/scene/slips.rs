@@ -39,7 +39,7 @@ const UNITS: [(&str, i32); 33] = [
 ];
 
 /// Everyday names and the names in scenes.
-const SYNONYMS: [(&str, &str); 20] = [
+const SYNONYMS: [(&str, &str); 21] = [
     ("disk", "Sphere"),
     ("disc", "Sphere"),
     ("circle", "Sphere"),
@@ -53,7 +53,8 @@ const SYNONYMS: [(&str, &str); 20] = [
     ("halfplane", "HalfSpace"),
     ("pipe", "Tube"),
     ("annulus", "Ring"),
-    ("rotation", "Turn"),
+    ("rotation", "RotationRate"),
+    ("turn", "RotationRate"),
     ("support", "Fix"),
     ("clamp", "Fix"),
     ("linearelastic", "StVenantKirchhoff"),

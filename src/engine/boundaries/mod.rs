@@ -30,7 +30,7 @@ mod symmetry;
 #[cfg(test)]
 mod tests;
 mod traction;
-mod turn;
+mod rotation_rate;
 mod velocity;
 
 pub use body_force::BodyForce;
@@ -43,7 +43,7 @@ pub use mean_velocity::MeanVelocity;
 pub use pressure::PressureLoad;
 pub use symmetry::{Side, Symmetry};
 pub use traction::Traction;
-pub use turn::PrescribedRotation;
+pub use rotation_rate::PrescribedRotation;
 pub use velocity::{LARGEST_MACH, PrescribedVelocity};
 
 use crate::plugin::Registry;

@@ -14,7 +14,7 @@ use crate::scene::{Edge, Expression, PerAxis, Select};
 /// A velocity that jumps sends a shock through the body. A smooth start within 1 ms, then a constant velocity
 /// of -0.1 m/s: `Velocity(on: Select(body: "tool"), value: (None, "-0.1*smoothstep(t/1e-3)"))`. A push of 2
 /// ms that ends as smoothly as it starts: `"-0.1*smoothstep(t/1e-3)*(1 - smoothstep((t - 1e-3)/1e-3))"`. A
-/// rigid body moves as a whole, with the same value in all of its places; `Turn` turns it.
+/// rigid body moves as a whole, with the same value in all of its places; `RotationRate` rotates it.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename = "Velocity")]
 pub struct PrescribedVelocity {
