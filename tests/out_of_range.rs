@@ -189,7 +189,7 @@ fn failure() {
     each("plugin", "failure(criterion: MaximumPrincipalStrain({}))", &[("limit", "0.0"), ("limit", "-0.1")]);
     each("plugin", "failure(criterion: MaximumPrincipalStress({}))", &[("limit", "0.0")]);
     let strain = "failure(criterion: JohnsonCook(d1: 0.1, d2: 0.0, d3: 0.0, {}))";
-    let more = [("reference_rate", "0.0"), ("reference_temperature", "0.0"), ("least_strain", "0.0")];
+    let more = [("reference_rate", "0.0"), ("reference_temperature", "0.0"), ("minimum_strain", "0.0")];
     each("plugin", strain, &more);
     each("plugin", &strain.replace("{}", "d5: 1.0, {}"), &[("melt_temperature", "20.0")]);
     let growth = "failure(criterion: MaximumPrincipalStrain(limit: 0.1), growth: CrackSpeed({}))";

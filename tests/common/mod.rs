@@ -172,7 +172,7 @@ pub fn failing() -> Source {
             "gone",
             2.0,
             "failure(criterion: MaximumPrincipalStrain(limit: 0.05), growth: CrackSpeed(), then: Removed),
-             remove_fragments(particles: 12, least_volume: 0.8)",
+             remove_fragments(particles: 12, minimum_volume_ratio: 0.8)",
         ),
     ];
     let text = format!(

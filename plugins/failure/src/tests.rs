@@ -272,7 +272,7 @@ fn failure_strains_are_those_of_johnson_and_cook() {
         reference_rate: 1.0,
         reference_temperature: 292.0,
         melt_temperature: Some(925.0),
-        least_strain: 1e-3,
+        minimum_strain: 1e-3,
     };
     let acrylic = JohnsonCookFailure {
         d1: -1.751,
@@ -283,7 +283,7 @@ fn failure_strains_are_those_of_johnson_and_cook() {
         reference_rate: 1e-3,
         reference_temperature: 213.0,
         melt_temperature: Some(398.0),
-        least_strain: 1e-3,
+        minimum_strain: 1e-3,
     };
     let file = include_str!("../tests/johnson_cook_failure_strain.csv");
     let mut seen = 0;

@@ -303,9 +303,9 @@ impl SolidBodies {
     pub fn limit_from_present(&mut self, step: &mut Step<'_>, present: &[f64]) -> Result<(), StepError> {
         let axes = step.world.dimension().count() as f64;
         self.limit_by(step, present, |_, law, gradient, damage| {
-            let Stretches { least_volume, largest_volume, .. } = stretches::of_body(gradient, damage);
-            let smallest = least_volume.max(0.0).powf(1.0 / axes);
-            law.stable_step_factor(&Stretches { smallest, largest: 1.0, least_volume, largest_volume })
+            let Stretches { smallest_volume, largest_volume, .. } = stretches::of_body(gradient, damage);
+            let smallest = smallest_volume.max(0.0).powf(1.0 / axes);
+            law.stable_step_factor(&Stretches { smallest, largest: 1.0, smallest_volume, largest_volume })
         })
     }
 

@@ -15,7 +15,7 @@ pub(super) fn of_body(gradient: &[DeformationGradient], damage: Option<&[Damage]
         rows.fold(Stretches::default(), |mut all, (row, _)| {
             let ExtremeValues { smallest, largest } = extreme_stretches(row.0);
             let volume = row.0.determinant();
-            all.add(&Stretches { smallest, largest, least_volume: volume, largest_volume: volume });
+            all.add(&Stretches { smallest, largest, smallest_volume: volume, largest_volume: volume });
             all
         })
     })
@@ -45,7 +45,7 @@ impl BlockSum for Stretches {
     fn add(&mut self, next: &Self) {
         self.smallest = self.smallest.min(next.smallest);
         self.largest = self.largest.max(next.largest);
-        self.least_volume = self.least_volume.min(next.least_volume);
+        self.smallest_volume = self.smallest_volume.min(next.smallest_volume);
         self.largest_volume = self.largest_volume.max(next.largest_volume);
     }
 }
