@@ -9,7 +9,7 @@ use meshless_engine::plugin::Registry;
 use meshless_engine::scene::{self, Problem, Scene, SceneError, Source};
 
 /// Maximum size of a scene from the standard input, B.
-const LARGEST_INPUT: u64 = 64 << 20;
+const MAX_INPUT: u64 = 64 << 20;
 
 /// A scene file, with replaced values.
 #[derive(Args)]
@@ -46,7 +46,7 @@ impl SceneFile {
             return scene::load_checked(&self.path, &self.set, &names);
         }
         let mut text = String::new();
-        let read = std::io::stdin().take(LARGEST_INPUT).read_to_string(&mut text);
+        let read = std::io::stdin().take(MAX_INPUT).read_to_string(&mut text);
         let source = Source::new("stdin.ron", text);
         if let Err(error) = read {
             return Err(

@@ -42,7 +42,7 @@ impl Default for RemoveFragments {
 }
 
 /// Largest number of particles of a piece that is looked for.
-const MOST: usize = 100;
+const MAX_PARTICLES: usize = 100;
 
 impl Plugin for RemoveFragments {
     const NAME: &'static str = "remove_fragments";
@@ -59,10 +59,10 @@ impl Plugin for RemoveFragments {
         }
         let of_dimension = if sim.dimension() == Dimension::Two { 5 } else { 7 };
         let particles = self.particles.unwrap_or(of_dimension);
-        if !(1..=MOST).contains(&particles) {
+        if !(1..=MAX_PARTICLES).contains(&particles) {
             return Err(SetupError::parameter(
                 "particles",
-                format!("`particles` must be from 1 to {MOST}, found {particles}"),
+                format!("`particles` must be from 1 to {MAX_PARTICLES}, found {particles}"),
                 "pieces of fewer particles are removed; 1 removes crushed particles only",
             ));
         }

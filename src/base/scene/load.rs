@@ -27,7 +27,7 @@ pub fn load_checked(
     check_too: &dyn Fn(&Scene) -> Vec<Problem>,
 ) -> Result<(Scene, Source), SceneError> {
     let name = path.display().to_string();
-    let read = files::read(path, files::LARGEST_TEXT).map_err(|error| {
+    let read = files::read(path, files::MAX_TEXT).map_err(|error| {
         let source = Source::new(name.clone(), "");
         let problem = Problem::new(match error.kind() {
             std::io::ErrorKind::NotFound => "the scene file does not exist".into(),

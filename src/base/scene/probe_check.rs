@@ -4,7 +4,7 @@ use super::requirements::{in_plane, positive_time, twice, unknown_body, usable_n
 use super::{Probe, Problem, Quantity, Scene, Take};
 
 /// Maximum number of points on a line.
-const MOST_PLACES: u32 = 1000;
+const MAX_POINTS: u32 = 1000;
 
 /// Checks all probes.
 pub(super) fn check(scene: &Scene, problems: &mut Vec<Problem>) {
@@ -102,7 +102,7 @@ fn options(probe: &Probe, i: usize) -> Option<Problem> {
         )
     } else if probe.line.is_some_and(|line| line.from == line.to) {
         ("line.to", "the two ends of a line must be different points", "a single point is measured with `at`")
-    } else if probe.line.is_some_and(|line| !(2..=MOST_PLACES).contains(&line.points)) {
+    } else if probe.line.is_some_and(|line| !(2..=MAX_POINTS).contains(&line.points)) {
         (
             "line.points",
             "`points` must be from 2 to 1000",

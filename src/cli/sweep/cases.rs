@@ -8,7 +8,7 @@ pub struct SweepCase {
 }
 
 /// Maximum number of runs: more are most likely a mistake.
-const MOST: usize = 10_000;
+const MAX_RUNS: usize = 10_000;
 
 /// Every combination of the values, the last setting changing fastest.
 ///
@@ -24,8 +24,8 @@ pub fn combinations(settings: &[(String, String)]) -> Result<Vec<SweepCase>, Str
         if values.iter().any(|value| value.is_empty()) {
             return Err(format!("a value of `{path}` is empty"));
         }
-        if cases.len() * values.len() > MOST {
-            return Err(format!("a sweep has at most {MOST} runs"));
+        if cases.len() * values.len() > MAX_RUNS {
+            return Err(format!("a sweep has at most {MAX_RUNS} runs"));
         }
         cases =
             cases.iter().flat_map(|case| values.iter().map(move |value| case.with(path, value))).collect();

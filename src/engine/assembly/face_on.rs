@@ -22,7 +22,7 @@ const FULL: f64 = 0.75;
 /// Transits of waves through the bodies for which a front counts where a condition keeps moving one of them.
 const LONGEST_FRONT: f64 = 20.0;
 /// Least spacings that two faces have in common along each of their axes.
-const LEAST_COMMON: f64 = 4.0;
+const MIN_COMMON: f64 = 4.0;
 
 /// Warns of every pair of bodies that have a contact and will meet face to face.
 pub(super) fn warn(sim: &mut SimBuilder<'_>) {
@@ -120,7 +120,7 @@ fn faces(a: &BodyPlan, b: &BodyPlan, along: DVec3, scene: &Scene) -> Option<[For
     let ahead = -of_b.at - of_a.at > 0.0;
     let plane = scene.dimension == crate::scene::Dimension::Two;
     let is_wide =
-        |(common, axis): (&f64, DVec3)| (plane && axis.z.abs() > 0.5) || *common >= LEAST_COMMON * spacing;
+        |(common, axis): (&f64, DVec3)| (plane && axis.z.abs() > 0.5) || *common >= MIN_COMMON * spacing;
     let meet = ahead && across.iter().zip([axes.0, axes.1]).all(is_wide);
     meet.then_some([of_a, of_b])
 }

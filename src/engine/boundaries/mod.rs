@@ -44,7 +44,7 @@ pub use pressure::PressureLoad;
 pub use symmetry::{Side, Symmetry};
 pub use traction::Traction;
 pub use rotation_rate::PrescribedRotation;
-pub use velocity::{LARGEST_MACH, PrescribedVelocity};
+pub use velocity::{MAX_MACH, PrescribedVelocity};
 
 use crate::plugin::Registry;
 

@@ -216,7 +216,7 @@ const MOTION_FACTOR: f64 = 0.1;
 /// the square of that.
 const TURN_FACTOR: f64 = 0.02;
 /// Steps of a body that nothing moves, in the whole run.
-const LEAST_STEPS: f64 = 100.0;
+const MIN_STEPS: f64 = 100.0;
 
 struct RigidKick {
     end: f64,
@@ -325,7 +325,7 @@ fn propose(body: &RigidBody, driven: DVec3, end: f64, step: &mut Step<'_>) {
     // Forces do not accelerate a body along axes on which its motion is prescribed.
     let pulled = if free == DVec3::ZERO { DVec3::ZERO } else { free * body.state.force / body.mass };
     let acceleration = (pulled + (DVec3::ONE - free) * driven).length() / spacing;
-    let rate = (turning / TURN_FACTOR).max((acceleration / MOTION_FACTOR).sqrt()).max(LEAST_STEPS / end);
+    let rate = (turning / TURN_FACTOR).max((acceleration / MOTION_FACTOR).sqrt()).max(MIN_STEPS / end);
     let name = &step.world.body(body.id).name;
     step.limits.propose(1.0 / rate, format_args!("motion of `{name}`"));
 }

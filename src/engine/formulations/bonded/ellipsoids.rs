@@ -15,9 +15,9 @@ use crate::symmetry::Ghosts;
 const LONGEST: f64 = 20.0;
 /// Share of a stretch that it follows in any case, beyond its root: a support of 2.4 spacings then reaches
 /// over 1.6 of those that the stretch makes of them.
-const LEAST: f64 = 2.0 / 3.0;
+const MIN_SHARE: f64 = 2.0 / 3.0;
 /// Trace of F F^T up to which no stretch is so large that more than its root counts.
-const WIDE: f64 = 1.0 / (LEAST * LEAST * LEAST * LEAST);
+const WIDE: f64 = 1.0 / (MIN_SHARE * MIN_SHARE * MIN_SHARE * MIN_SHARE);
 /// Determinant of F F^T down to which, with such a trace, no stretch is below 1/20, far above the limit.
 const FLAT: f64 = 0.02;
 
@@ -53,7 +53,7 @@ impl Ellipsoid {
         if squares.trace() <= WIDE && squares.determinant() >= FLAT {
             return squares.inverse_root();
         }
-        let axis = |stretch: f64| stretch.sqrt().max(LEAST * stretch);
+        let axis = |stretch: f64| stretch.sqrt().max(MIN_SHARE * stretch);
         Eigen::new(&squares).map(|square| axis(square.sqrt()).clamp(LONGEST.recip(), LONGEST).powi(-2))
     }
 

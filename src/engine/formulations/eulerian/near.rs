@@ -11,7 +11,7 @@ use crate::parallel::{FourLanes, Lanes4, PlaneOrSpace, Split, run_hot_in};
 /// Least determinant of M_i in units of `(tr M_i / d)^d`. Below it the neighbours are so nearly on a line, or
 /// in space in a plane, that a gradient across it is noise: what is left of a body that has separated fully.
 /// Spacings along two axes may differ by more than two, corners of bodies have above 0.8.
-pub(super) const LEAST_SPREAD: f64 = 0.02;
+pub(super) const MIN_SPREAD: f64 = 0.02;
 
 /// Results of the pass for every row.
 #[derive(Clone, Copy, Debug, Default)]
@@ -153,7 +153,7 @@ impl<K: KernelProfile> PlaneOrSpace for LookLoop<'_, '_, K> {
                 count += found;
             }
             let inverse_moment =
-                MomentMatrix::of_columns(&moment).inverse_above(LEAST_SPREAD).unwrap_or_default();
+                MomentMatrix::of_columns(&moment).inverse_above(MIN_SPREAD).unwrap_or_default();
             let count = count as u32;
             rows.around[k] =
                 NearbyMotion { count, inverse_moment, first_moment: first_moment.xyz(), weight_sum, filled };

@@ -7,7 +7,7 @@
 use glam::{DMat3, DVec3};
 
 use super::dilatation::{DilatationRate, gradient};
-use super::near::LEAST_SPREAD;
+use super::near::MIN_SPREAD;
 use super::particle::EulerianParticle;
 use super::rows::{EulerianRows, PointColumns};
 use super::start;
@@ -171,7 +171,7 @@ impl<K: KernelProfile> PlaneOrSpace for AdvanceLoop<'_, K> {
                     }
                 }
             }
-            let Some(inverse) = MomentMatrix::of_columns(&moment).inverse_above(LEAST_SPREAD) else {
+            let Some(inverse) = MomentMatrix::of_columns(&moment).inverse_above(MIN_SPREAD) else {
                 continue;
             };
             let l = fit::<A, D>(a, &spread, &inverse);

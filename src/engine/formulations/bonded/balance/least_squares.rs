@@ -11,7 +11,7 @@ pub(super) struct SparseRows {
 /// Norm of the gradient over that of the start at which the solution is good enough.
 const GOOD: f64 = 1e-7;
 /// Most iterations: cubic lattices take less than 200, those with many shares on their bounds some hundred.
-const MOST: usize = 1000;
+const MAX_ITERATIONS: usize = 1000;
 /// Distance from a bound that is none, over the distance of the bounds.
 const ON_BOUND: f64 = 1e-12;
 
@@ -85,7 +85,7 @@ impl LeastSquares<'_> {
         let mut gradient = slope(&x);
         let mut parts = self.split(&x, &gradient);
         let mut direction = parts.free.clone();
-        for _ in 0..MOST {
+        for _ in 0..MAX_ITERATIONS {
             if square(&parts.free) + square(&parts.inward) <= enough {
                 break;
             }

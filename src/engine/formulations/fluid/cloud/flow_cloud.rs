@@ -19,7 +19,7 @@ use crate::scene::Precision;
 use crate::world::BodyId;
 
 /// Least sum of V_f W for which there is fluid beside a boundary.
-pub const LEAST_SHARE: f64 = 1e-10;
+pub const MIN_SHARE: f64 = 1e-10;
 
 /// A neighbour of a fluid particle.
 #[derive(Clone, Copy, Debug)]

@@ -101,7 +101,7 @@ impl FluidKernel {
                 a.times(a.times(a.times(cube, square), square), a.times_add(q, slope, one))
             }
             KernelShape::QuinticSpline => {
-                let above_zero = a.larger(q, a.splat(LEAST_LENGTH));
+                let above_zero = a.larger(q, a.splat(MIN_LENGTH));
                 a.scale(QUINTIC_WEIGHT, a.over(spline::<A, 4>(a, q), above_zero))
             }
         }
@@ -235,7 +235,7 @@ pub trait KernelLoop {
 }
 
 /// Least length that a weight is divided by, over the support: a pair in one place has a weight too.
-const LEAST_LENGTH: f64 = 1e-12;
+const MIN_LENGTH: f64 = 1e-12;
 
 /// Factor of the fourth powers over q = r/H in the pair weight of the quintic spline, which is one at q = 0.
 const QUINTIC_WEIGHT: f64 = 1.0 / 72.0;

@@ -14,7 +14,7 @@ use crate::scene::Problem;
 /// Depth of the edges of walls that fluids may see through, in supports: those of 20 degrees or more.
 const EDGES: usize = 2;
 /// Largest relative change of the density at the start.
-const LARGEST_CHANGE: f64 = 0.1;
+const MAX_CHANGE: f64 = 0.1;
 
 fn fault(body: &BodyPlan, field: &str, message: String, help: &str) -> SetupError {
     let path = format!("bodies[{}].{field}", body.id.0);
@@ -61,7 +61,7 @@ pub fn periods_are_long(periodic: &Periodic, support: f64) -> Result<(), SetupEr
 pub fn sound_is_fast(group: &Group, at: DVec3, p: f64, rho: f64, name: &str) -> Result<(), SetupError> {
     let Some(state) = group.fluid() else { return Ok(()) };
     let change = rho / state.density - 1.0;
-    if change.abs() <= LARGEST_CHANGE {
+    if change.abs() <= MAX_CHANGE {
         return Ok(());
     }
     let message = format!(

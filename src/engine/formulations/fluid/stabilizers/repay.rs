@@ -11,7 +11,7 @@ use crate::schedule::{AccountKind, Step, StepError};
 use crate::world::{BodyId, Mass, Removed, Velocity};
 
 /// Largest share of their relative velocities that neighbours lose in a step.
-const LARGEST: f64 = 0.05;
+const MAX_LOSS: f64 = 0.05;
 
 /// Pays back what an account of dissipation has given to a body, where it is below zero: `dv_i = s sum_j V_j
 /// W_ij (v_ij . x_ij) x_ij / r_ij^2` over the body, with s such that the energy is paid, at most 0.05 in a
@@ -62,7 +62,7 @@ impl Repayment {
         if taken <= 0.0 {
             return Ok(());
         }
-        let strength = (owed / taken).min(LARGEST);
+        let strength = (owed / taken).min(MAX_LOSS);
         let slices = (&mut velocity[rows.clone()], &self.rubs[..], &mass[rows.clone()], &removed[rows]);
         type Rows<'a> = (&'a mut [Velocity], &'a [Rub], &'a [Mass], &'a [Removed]);
         let lost = sum_over_blocks(slices, &|_, (velocity, rubs, mass, removed): Rows<'_>| {

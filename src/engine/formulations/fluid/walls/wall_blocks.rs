@@ -6,7 +6,7 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::wall_pressure::{FluidBeside, share_wetted};
-use crate::formulations::fluid::cloud::{FlowCloud, FluidState, LEAST_SHARE, take_until};
+use crate::formulations::fluid::cloud::{FlowCloud, FluidState, MIN_SHARE, take_until};
 use crate::formulations::fluid::lists::blocks::{BlockLists, Blocks, OfBlocks, OwnBlock, Packed, dot};
 use crate::formulations::fluid::lists::{NearRow, NearWriter};
 use crate::parallel::{
@@ -187,7 +187,7 @@ impl BlockSums {
     #[inline(always)]
     fn mean(&self, lane: usize) -> FluidBeside {
         let total = f64::from(self.total.0[lane]);
-        if total <= LEAST_SHARE {
+        if total <= MIN_SHARE {
             return FluidBeside::default();
         }
         let vector = |[x, y, z]: &[Lanes8; 3]| {

@@ -17,7 +17,7 @@
 use std::ops::Range;
 
 use super::wall_pressure::share_wetted;
-use crate::formulations::fluid::cloud::{FlowCloud, LEAST_SHARE};
+use crate::formulations::fluid::cloud::{FlowCloud, MIN_SHARE};
 use crate::formulations::fluid::lanes::{Four, MASKS, OwnRecord, as_rows, dot, filled_up};
 use crate::parallel::{
     FourLanes, Lanes4, PlaneOrSpace, Split, for_each_block, for_each_own_block, run_hot_in, share_rows_of,
@@ -148,7 +148,7 @@ impl RatesBeside<'_> {
                 rate = a.times_add(kernel.weights(a, distance), approach, rate);
             }
             let share = share.sum();
-            *out = if share > LEAST_SHARE { rate.sum() / share } else { 0.0 };
+            *out = if share > MIN_SHARE { rate.sum() / share } else { 0.0 };
         }
     }
 }

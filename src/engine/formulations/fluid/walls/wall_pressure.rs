@@ -10,7 +10,7 @@ use std::ops::Range;
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
-use crate::formulations::fluid::cloud::{FlowCloud, FluidState, LEAST_SHARE, take_until};
+use crate::formulations::fluid::cloud::{FlowCloud, FluidState, MIN_SHARE, take_until};
 use crate::formulations::fluid::lanes::{
     FlowParticle, Four, FourPlaces, MASKS, OwnRecord, as_rows, dot, filled_up, sums,
 };
@@ -209,7 +209,7 @@ impl<const D: usize> SumsBeside<D> {
     #[inline(always)]
     fn mean<A: FourLanes, const STICKS: bool>(&self, a: A, out: &mut FluidBeside) {
         let total = self.total.sum();
-        if total > LEAST_SHARE {
+        if total > MIN_SHARE {
             let mean = 1.0 / total;
             out.pressure = self.pressure.sum() * mean;
             out.moment = sums(a, &self.moment) * mean;

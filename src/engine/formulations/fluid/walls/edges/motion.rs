@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::{DMat3, DVec3};
 
 use super::fronts::WallShapes;
-use crate::formulations::fluid::cloud::{EdgeParticle, FlowCloud, Group, LEAST_SHARE, part};
+use crate::formulations::fluid::cloud::{EdgeParticle, FlowCloud, Group, MIN_SHARE, part};
 use crate::linalg::dyad;
 use crate::plugin::SimBuilder;
 use crate::schedule::{Run, Step, StepError};
@@ -82,7 +82,7 @@ impl EdgeMotion {
             let v = cloud.records[row].velocity();
             let excess = inverse * (motion + own * v) - behind * v;
             let [share, rate] = cloud.sums_beside(row, half, |part| part.dot(excess));
-            let rate = if share > LEAST_SHARE { -rate / share } else { 0.0 };
+            let rate = if share > MIN_SHARE { -rate / share } else { 0.0 };
             out.push(EdgeParticle { row, behind, inverse, own, excess, rate, force: [DVec3::ZERO; 2] });
         }
     }

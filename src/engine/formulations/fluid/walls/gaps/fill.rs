@@ -15,7 +15,7 @@ use super::moments::Surrounding;
 use crate::formulations::fluid::cloud::FlowCloud;
 
 /// Share of the fluid below which a particle sees none.
-const LEAST_SHARE: f64 = 1e-10;
+const MIN_SHARE: f64 = 1e-10;
 /// Closed share below which a dry gap is at its end.
 const OPEN: f64 = 0.5;
 
@@ -50,7 +50,7 @@ impl RestOfGap {
         let pressure = cloud.records[row as usize].pressure();
         let of_mean =
             || Self { pressure, slope: slope / total, density: mass / total, way: place.length() / total };
-        (total > LEAST_SHARE).then(of_mean)
+        (total > MIN_SHARE).then(of_mean)
     }
 }
 
@@ -93,7 +93,7 @@ impl Gap {
             total += pair.value;
             mean += pair.value * velocity(pair.row);
         }
-        if total > LEAST_SHARE {
+        if total > MIN_SHARE {
             let apart = mean / total - velocity(self.particle[0] as usize);
             let inflow = apart.dot(self.around.toward()).max(0.0) * way / motion.spacing;
             self.fall = 0.5 * density * inflow * inflow;
@@ -158,7 +158,7 @@ impl Fill {
             density: sum.density / total,
             way: sum.way / total,
         };
-        (total > LEAST_SHARE).then(mean)
+        (total > MIN_SHARE).then(mean)
     }
 
     /// Continues pressures to the other sides of gaps.
@@ -183,6 +183,6 @@ impl Fill {
             return Some(if fall > 0.0 { (pressure - fall).max(0.0) } else { pressure });
         }
         let [total, pressure] = self.beyond[row - cloud.fluid];
-        (total > LEAST_SHARE).then(|| pressure / total)
+        (total > MIN_SHARE).then(|| pressure / total)
     }
 }
