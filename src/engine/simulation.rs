@@ -128,7 +128,7 @@ impl RunError {
     }
 }
 
-/// Least step, as a share of the whole duration, of a run whose step shrinks.
+/// Minimum step, as a share of the whole duration, of a run whose step shrinks.
 const MIN_STEP: f64 = 1e-12;
 /// The step of such a run over the first one, at most.
 const SHRUNK: f64 = 1e-3;

@@ -89,7 +89,7 @@ impl JohnsonCookFailure {
             let above = temperature - self.reference_temperature;
             (above / (melt - self.reference_temperature)).clamp(0.0, 1.0)
         });
-        // `max` also turns what is not a number into the least strain: the particle fails, the run goes on.
+        // `max` also turns what is not a number into the minimum strain: the particle fails, the run goes on.
         (shape * fast * (1.0 + self.d5 * hot)).max(self.minimum_strain)
     }
 }

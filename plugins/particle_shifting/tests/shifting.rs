@@ -17,7 +17,7 @@ fn simulation(plugins: &str, lattice: &str, velocity: &str) -> Simulation {
     periodic_flow::simulation(particle_shifting::register, "Mixed", plugins, (lattice, velocity))
 }
 
-/// Least distance of two particles over the spacing, across the sides of the box as well.
+/// Minimum distance of two particles over the spacing, across the sides of the box as well.
 fn least_distance(sim: &Simulation) -> f64 {
     let x = column::<Position>(sim);
     let distance = |a: DVec3, b: DVec3| {

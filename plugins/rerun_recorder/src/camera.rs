@@ -5,7 +5,7 @@ use meshless_engine::scene::Dimension;
 /// A box around particles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
-    /// Least coordinates, m.
+    /// Minimum coordinates, m.
     pub min: [f64; 3],
     /// Largest coordinates, m.
     pub max: [f64; 3],

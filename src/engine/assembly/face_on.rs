@@ -21,7 +21,7 @@ const REMEDY: &str = "artificial_viscosity";
 const FULL: f64 = 0.75;
 /// Transits of waves through the bodies for which a front counts where a condition keeps moving one of them.
 const LONGEST_FRONT: f64 = 20.0;
-/// Least spacings that two faces have in common along each of their axes.
+/// Minimum spacings that two faces have in common along each of their axes.
 const MIN_COMMON: f64 = 4.0;
 
 /// Warns of every pair of bodies that have a contact and will meet face to face.

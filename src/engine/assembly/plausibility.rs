@@ -13,7 +13,7 @@ const MAX_YIELD: f64 = 0.1;
 const SOUND: std::ops::RangeInclusive<f64> = 0.01..=2.0e4;
 /// Solids from this density on are metals, rocks and ceramics, kg/m3.
 const DENSE: f64 = 3.0e3;
-/// Least speed of sound in dense solids: a hundredth of that in lead, m/s.
+/// Minimum speed of sound in dense solids: a hundredth of that in lead, m/s.
 const DENSE_SOUND: f64 = 10.0;
 /// Gravity of a centrifuge, m/s2: more is a slip of units.
 const MAX_GRAVITY: f64 = 5.0e3;

@@ -37,7 +37,7 @@ pub enum Side {
     Above,
 }
 
-/// Least distance of a particle from the plane, as a share of the spacing.
+/// Minimum distance of a particle from the plane, as a share of the spacing.
 const MIN_DISTANCE: f64 = 0.05;
 
 impl Plugin for Symmetry {

@@ -9,7 +9,7 @@ use crate::parallel::{FourLanes, Lanes4, Number, Vector};
 
 /// Fours from which on a batch is full: it then still fits the first-level cache.
 const FULL: usize = 40;
-/// Most rows of a batch.
+/// Maximum number of rows of a batch.
 pub(super) const MAX_ROWS: usize = 16;
 
 /// Four vectors, and their lengths or the squares of these.

@@ -5,7 +5,7 @@ use super::term::{Pair, Rates};
 use super::weight_at::WeightAt;
 use crate::parallel::{EIGHT, EightLanes, Lanes8, Number, Vector};
 
-/// Most neighbours: their pairs fit the first-level cache.
+/// Maximum number of neighbours: their pairs fit the first-level cache.
 pub(crate) const CHUNK: usize = 48;
 
 /// One neighbour of all particles of a block. Where it is beyond the support, or the particle itself, its

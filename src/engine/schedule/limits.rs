@@ -37,7 +37,7 @@ impl Default for Limit {
     }
 }
 
-/// Least number of steps for which a limit is kept.
+/// Minimum number of steps for which a limit is kept.
 const MEMORY: u32 = 500;
 
 /// The limits proposed for the next step. The smallest one is kept; of equal ones the first.

@@ -3,7 +3,7 @@
 /// How far from a vertex particles may be at the start to become its carriers, over the reach: three layers.
 pub(super) const CANDIDATES: f64 = 1.6;
 
-/// Least reach over the distance of the nearest carrier, so that a vertex always has one.
+/// Minimum reach over the distance of the nearest carrier, so that a vertex always has one.
 const MIN_REACH: f64 = 2.0;
 
 /// The present reach of a vertex, m, and the sum of the weights of its carriers.

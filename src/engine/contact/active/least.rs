@@ -2,7 +2,7 @@
 
 use crate::parallel::BlockSum;
 
-/// The least of lengths, m; infinite where there is none.
+/// The minimum of lengths, m; infinite where there is none.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::contact) struct Least(pub f64);
 

@@ -48,7 +48,7 @@ impl MemberParticles {
         self.radius.iter().copied().fold(0.0, f64::max)
     }
 
-    /// The least radius, m.
+    /// The minimum radius, m.
     pub fn least(&self) -> f64 {
         self.radius.iter().copied().fold(f64::INFINITY, f64::min)
     }

@@ -19,7 +19,7 @@ pub fn restitution(zeta: f64) -> f64 {
     }
 }
 
-/// Least restitution that a dashpot makes: the damping ratio of zero would be infinite, and a ratio above 5
+/// Minimum restitution that a dashpot makes: the damping ratio of zero would be infinite, and a ratio above 5
 /// more than the steps of an impact bear: it would turn the velocity around within one.
 const MIN_RESTITUTION: f64 = 0.01;
 

@@ -50,7 +50,7 @@ impl ParticleContact {
         Self { interaction, search, first, second, mirror, periodic, contacts, contact_nodes }
     }
 
-    /// Least period of the domain with which the contact works, m.
+    /// Minimum period of the domain with which the contact works, m.
     pub fn least_period(&self) -> f64 {
         self.search.least_period()
     }
@@ -121,7 +121,7 @@ impl ParticleContact {
         Ok((speed, stretch))
     }
 
-    /// The force of every pair that touches; returns the energies, and the least distance of two that are
+    /// The force of every pair that touches; returns the energies, and the minimum distance of two that are
     /// near and just touch, m.
     fn evaluate(&mut self, step: &Step<'_>, stretch: f64) -> Result<(ContactEnergy, f64), StepError> {
         let first = MemberColumns::new(&self.first, step.world, step.resources)?;

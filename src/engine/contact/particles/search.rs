@@ -116,7 +116,7 @@ impl Search {
         is_old
     }
 
-    /// Least period with which each particle sees one image of another, m.
+    /// Minimum period with which each particle sees one image of another, m.
     pub fn least_period(&self) -> f64 {
         2.0 * (self.largest[0] + self.largest[1] + self.skin)
     }

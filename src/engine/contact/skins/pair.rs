@@ -65,7 +65,7 @@ impl SkinPair {
         Self { interaction, patches, keeps_reference: false, rule, near, periodic, places, passes }
     }
 
-    /// Least period of the domain with which the contact works, m.
+    /// Minimum period of the domain with which the contact works, m.
     pub fn least_period(&self) -> f64 {
         let [first, second] = self.patches.each_ref().map(|patch| &*patch.skin);
         NearSkins::least_period([first, second])
@@ -138,7 +138,7 @@ impl SkinPair {
         0.5 * (self.patches[0].skin.spacing + self.patches[1].skin.spacing)
     }
 
-    /// Forces of the points of one side, and the least gap of points without contact, m.
+    /// Forces of the points of one side, and the minimum gap of points without contact, m.
     fn evaluate(&mut self, side: usize, dt: f64) -> (ContactEnergy, Least) {
         let length = self.length();
         let periodic = self.periodic.any().then_some(self.periodic);

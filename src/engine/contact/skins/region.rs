@@ -33,7 +33,7 @@ impl SkinRegion {
         self.vertices.extend(0..skin.vertices() as u32);
     }
 
-    /// Chooses the facets by their least distance from the other body, m: those closer than `near`, m, are
+    /// Chooses the facets by their minimum distance from the other body, m: those closer than `near`, m, are
     /// searched.
     pub fn choose(&mut self, skin: &Skin, near: f64, gap: impl Fn(u32) -> f64) {
         let within = near + BEYOND * skin.spacing;

@@ -37,7 +37,7 @@ impl NodeTouch {
 /// Data of the nodes near the surface for the time step.
 #[derive(Clone, Copy, Default)]
 pub(in crate::contact) struct NearNodes {
-    /// Least way to the centre of a particle near the surface that just touches, m.
+    /// Minimum way to the centre of a particle near the surface that just touches, m.
     pub least: Least,
     /// The first particle near the surface that nothing moves but conditions.
     pub held: Option<usize>,

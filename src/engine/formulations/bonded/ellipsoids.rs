@@ -23,8 +23,8 @@ const FLAT: f64 = 0.02;
 
 /// Safety margin of a bound of an eigenvalue against rounding.
 const ROUNDING: f64 = 1e-6;
-/// Least bound of the eigenvalues of G, over their mean, from which on it is taken for the smallest: that is
-/// then no more than half as far from the mean.
+/// Minimum bound of the eigenvalues of G, over their mean, from which on it is taken for the smallest: that
+/// is then no more than half as far from the mean.
 const ROUND: f64 = 0.9;
 
 /// The ellipsoid r . G r = 1 of a particle.

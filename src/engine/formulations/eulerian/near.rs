@@ -8,9 +8,9 @@ use crate::kernels::{Kernel, KernelProfile, KernelVisitor, ProfiledKernel, Scale
 use crate::linalg::Sym3;
 use crate::parallel::{FourLanes, Lanes4, PlaneOrSpace, Split, run_hot_in};
 
-/// Least determinant of M_i in units of `(tr M_i / d)^d`. Below it the neighbours are so nearly on a line, or
-/// in space in a plane, that a gradient across it is noise: what is left of a body that has separated fully.
-/// Spacings along two axes may differ by more than two, corners of bodies have above 0.8.
+/// Minimum determinant of M_i in units of `(tr M_i / d)^d`. Below it the neighbours are so nearly on a line,
+/// or in space in a plane, that a gradient across it is noise: what is left of a body that has separated
+/// fully. Spacings along two axes may differ by more than two, corners of bodies have above 0.8.
 pub(super) const MIN_SPREAD: f64 = 0.02;
 
 /// Results of the pass for every row.

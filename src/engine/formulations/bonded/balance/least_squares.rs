@@ -10,7 +10,8 @@ pub(super) struct SparseRows {
 
 /// Norm of the gradient over that of the start at which the solution is good enough.
 const GOOD: f64 = 1e-7;
-/// Most iterations: cubic lattices take less than 200, those with many shares on their bounds some hundred.
+/// Maximum number of iterations: cubic lattices take less than 200, those with many shares on their bounds
+/// some hundred.
 const MAX_ITERATIONS: usize = 1000;
 /// Distance from a bound that is none, over the distance of the bounds.
 const ON_BOUND: f64 = 1e-12;
@@ -63,7 +64,7 @@ fn dot(x: &[f64], y: &[f64]) -> f64 {
     x.iter().zip(y).map(|(x, y)| x * y).sum()
 }
 
-/// The sum |A x - b|^2 + sum_k damping_k^2 x_k^2, with the least and the greatest value of each unknown.
+/// The sum |A x - b|^2 + sum_k damping_k^2 x_k^2, with the minimum and the maximum value of each unknown.
 pub(super) struct LeastSquares<'a> {
     pub a: &'a SparseRows,
     pub b: &'a [f64],

@@ -18,7 +18,7 @@ use crate::parallel::{EIGHT, Lanes4};
 use crate::scene::Precision;
 use crate::world::BodyId;
 
-/// Least sum of V_f W for which there is fluid beside a boundary.
+/// Minimum sum of V_f W for which there is fluid beside a boundary.
 pub const MIN_SHARE: f64 = 1e-10;
 
 /// A neighbour of a fluid particle.

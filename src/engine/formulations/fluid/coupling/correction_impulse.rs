@@ -84,7 +84,7 @@ impl Particles<'_> {
         rates.filter(|(k, _)| moves(*k)).map(|(_, (drag, mass))| SHARED * drag / mass.0).fold(0.0, f64::max)
     }
 
-    /// Least density of a particle of the body that the flow acts on, kg/m3.
+    /// Minimum density of a particle of the body that the flow acts on, kg/m3.
     pub fn lightest(&self) -> Option<f64> {
         let rows = self.records.iter().zip(self.mass).zip(self.total);
         let wet = rows.filter(|((record, _), force)| record.volume() > 0.0 && force.0 != DVec3::ZERO);

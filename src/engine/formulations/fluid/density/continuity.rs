@@ -166,7 +166,7 @@ impl HotLoop for AdvanceDensity<'_> {
             least = if rho.0 < least { rho.0 } else { least };
             sum += rho.0;
         }
-        // What is no number does not show in the least.
+        // What is no number does not show in the minimum.
         if !(least > 0.0 && sum.is_finite()) {
             let is_good = |rho: &Density| rho.0 > 0.0 && rho.0.is_finite();
             change.broken = density.iter().position(|rho| !is_good(rho)).map_or(0, |k| first + k + 1);

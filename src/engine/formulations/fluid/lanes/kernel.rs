@@ -234,7 +234,7 @@ pub trait KernelLoop {
     fn run<K: PairShape>(self, kernel: K) -> Self::Output;
 }
 
-/// Least length that a weight is divided by, over the support: a pair in one place has a weight too.
+/// Minimum length that a weight is divided by, over the support: a pair in one place has a weight too.
 const MIN_LENGTH: f64 = 1e-12;
 
 /// Factor of the fourth powers over q = r/H in the pair weight of the quintic spline, which is one at q = 0.

@@ -43,7 +43,7 @@ impl DisplacementBounds {
         Self { low: smaller(self.low, other.low), high: larger(self.high, other.high) }
     }
 
-    /// Most that a displacement of one box and one of the other differ, m; zero where one has none.
+    /// Maximum distance between a displacement of one box and one of the other, m; zero if one has none.
     pub fn farthest(self, other: Self) -> f64 {
         (self.high.xyz() - other.low.xyz())
             .max(other.high.xyz() - self.low.xyz())

@@ -61,7 +61,7 @@ pub struct Drift {
     grid: CellBlock,
     /// Periods of the axes along which the grid repeats, m, and one over them; zero on the others.
     periods: [Lanes4; 2],
-    /// Least length of a cell, m.
+    /// Minimum length of a cell, m.
     length: f64,
     /// The particles of each cell, ascending.
     cells: Buckets,

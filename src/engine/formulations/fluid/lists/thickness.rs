@@ -14,7 +14,7 @@ const FULL: f64 = 0.9;
 
 /// Where a body is thinner than the support.
 pub struct Thin {
-    /// Least thickness, m.
+    /// Minimum thickness, m.
     pub least: f64,
     /// Where that is, m.
     pub at: DVec3,
@@ -116,7 +116,7 @@ impl Thickness {
     }
 }
 
-/// Axes along which some vectors spread, the least one first; in a plane that of z last.
+/// Axes along which some vectors spread, the smallest one first; in a plane that of z last.
 pub fn axes(vectors: impl Iterator<Item = DVec3>, plane: bool) -> DMat3 {
     let spread = vectors.fold(Sym3::ZERO, |sum, x| sum + Sym3::dyad(x));
     // In a plane the third axis has no spread: it is not a side of the body.

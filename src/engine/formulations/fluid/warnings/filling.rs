@@ -21,7 +21,7 @@ const INSIDE: f64 = 0.75;
 const SHARE: f64 = 0.1;
 /// Growth of the difference for which the warning is renewed.
 const GROWTH: f64 = 1.2;
-/// Least part of the particles of a body that has to be inside for a mean: a splash has gaps.
+/// Minimum part of the particles of a body that has to be inside for a mean: a splash has gaps.
 const PART: f64 = 0.25;
 
 /// Watches the filling of every body.

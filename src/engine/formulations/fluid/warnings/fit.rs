@@ -14,7 +14,7 @@ const BESIDE: f64 = 1.5;
 /// Root mean square difference of the filling beside a boundary from that in the fluid that is worth a
 /// warning: a gap of a quarter of a spacing along a plane. Round bodies in square lattices have 0.03.
 const MAX_DEVIATION: f64 = 0.04;
-/// Least number of particles for a mean.
+/// Minimum number of particles for a mean.
 const MIN_COUNT: usize = 8;
 /// Distances of particles that face a boundary across a gap from the nearest one of it, over the mean of both
 /// spacings: half a spacing to two of empty space. Particles farther away are meant to fall.

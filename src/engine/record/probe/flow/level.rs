@@ -12,7 +12,7 @@ use crate::world::{Column, MissingColumn, Position, World};
 
 /// Steps along the line in a support radius.
 const STEPS: f64 = 12.0;
-/// Least part of a place that fluids fill where it is wet: inside walls none is.
+/// Minimum part of a place that fluids fill where it is wet: inside walls none is.
 const MIN_FILLING: f64 = 0.1;
 
 /// A line up from a point.

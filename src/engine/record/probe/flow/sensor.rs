@@ -16,7 +16,7 @@ use crate::world::{Column, MissingColumn, Position, World};
 
 /// Part of the place in front of a point that a fluid without gaps fills at least.
 const FILLED: f64 = 0.8;
-/// Least part of the place in front of a point for which there is a pressure.
+/// Minimum part of the place in front of a point for which there is a pressure.
 const MIN_FILLING: f64 = 1e-6;
 
 /// A face in a wall.
