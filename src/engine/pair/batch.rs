@@ -28,7 +28,7 @@ impl FourVectors {
     #[inline(always)]
     pub(crate) fn squared<A: FourLanes>(a: A, vector: Vector<A>) -> Self {
         let square = vector.length_squared().lanes();
-        Self { vector: components(vector), length: a.larger(square, Lanes4::splat(f64::MIN_POSITIVE)) }
+        Self { vector: components(vector), length: a.max(square, Lanes4::splat(f64::MIN_POSITIVE)) }
     }
 }
 

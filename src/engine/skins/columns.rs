@@ -127,19 +127,19 @@ impl SkinView<'_> {
             let (weight, arm) = (carrier.weight, carrier.arm);
             if carrier.map != 0 {
                 let place = self.carried(carrier, row);
-                x[0] = a.mul_add(weight, place.x, x[0]);
-                y[0] = a.mul_add(weight, place.y, y[0]);
-                z[0] = a.mul_add(weight, place.z, z[0]);
+                x[0] = a.scalar_mul_add(weight, place.x, x[0]);
+                y[0] = a.scalar_mul_add(weight, place.y, y[0]);
+                z[0] = a.scalar_mul_add(weight, place.z, z[0]);
                 continue;
             }
             let (place, f) = (&self.position[row].0, &self.gradient[row].0);
             let (p, q, r) = (weight * arm.x, weight * arm.y, weight * arm.z);
-            x[0] = a.mul_add(p, f.x_axis.x, a.mul_add(weight, place.x, x[0]));
-            y[0] = a.mul_add(p, f.x_axis.y, a.mul_add(weight, place.y, y[0]));
-            x[1] = a.mul_add(r, f.z_axis.x, a.mul_add(q, f.y_axis.x, x[1]));
-            y[1] = a.mul_add(r, f.z_axis.y, a.mul_add(q, f.y_axis.y, y[1]));
-            z[0] = a.mul_add(p, f.x_axis.z, a.mul_add(weight, place.z, z[0]));
-            z[1] = a.mul_add(r, f.z_axis.z, a.mul_add(q, f.y_axis.z, z[1]));
+            x[0] = a.scalar_mul_add(p, f.x_axis.x, a.scalar_mul_add(weight, place.x, x[0]));
+            y[0] = a.scalar_mul_add(p, f.x_axis.y, a.scalar_mul_add(weight, place.y, y[0]));
+            x[1] = a.scalar_mul_add(r, f.z_axis.x, a.scalar_mul_add(q, f.y_axis.x, x[1]));
+            y[1] = a.scalar_mul_add(r, f.z_axis.y, a.scalar_mul_add(q, f.y_axis.y, y[1]));
+            z[0] = a.scalar_mul_add(p, f.x_axis.z, a.scalar_mul_add(weight, place.z, z[0]));
+            z[1] = a.scalar_mul_add(r, f.z_axis.z, a.scalar_mul_add(q, f.y_axis.z, z[1]));
         }
         (DVec3::new(x[0] + x[1], y[0] + y[1], z[0] + z[1]), is_there)
     }

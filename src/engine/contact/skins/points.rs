@@ -96,7 +96,7 @@ impl Pressed {
     /// Adds a share of a spring along `normal` that represents an area, m2 (m).
     #[inline]
     pub fn add(&mut self, share: f64, spring: &Spring, normal: DVec3, area: f64, overlap: f64) {
-        let part = spring.over(share);
+        let part = spring.scaled(share);
         self.join(&Self {
             force: part.force * normal,
             spring: part,

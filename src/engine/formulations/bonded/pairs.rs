@@ -246,7 +246,7 @@ impl BodyPairs<'_> {
         }
         if uniform.is_none() {
             let other = Lanes4([support[j].0, support[k].0, support[l].0, support[m].0]);
-            room.supports[n] = a.scale(0.5, a.plus(Lanes4::splat(own.support), other));
+            room.supports[n] = a.scale(0.5, a.add(Lanes4::splat(own.support), other));
         }
     }
 }

@@ -141,12 +141,12 @@ impl<K: KernelProfile> PlaneOrSpace for LookLoop<'_, '_, K> {
                 }
                 for n in 0..found {
                     let EulerianParticle { place: other, velocity } = points[neighbors[n] as usize];
-                    let (arm, weight) = (a.minus(other, own), other.0[3] * weights[n]);
+                    let (arm, weight) = (a.sub(other, own), other.0[3] * weights[n]);
                     let weighted = a.scale(weight, arm);
                     for axis in 0..D {
                         moment[axis] = a.scale_add(arm.0[axis], weighted, moment[axis]);
                     }
-                    first_moment = a.plus(first_moment, weighted);
+                    first_moment = a.add(first_moment, weighted);
                     weight_sum += weight;
                     filled += velocity.0[3] * values[n];
                 }

@@ -165,8 +165,8 @@ impl HotLoop for LargestDistance<'_> {
                 ]);
                 let now = then + (Vector::new(a, [x, y, z]) - u_i);
                 let short = a.where_below(then.length_squared().lanes(), limit, now.length_squared().lanes());
-                let present = a.where_below(Lanes4::ZERO, a.larger(volume, own_volume), short);
-                largest = a.larger(present, largest);
+                let present = a.where_below(Lanes4::ZERO, a.max(volume, own_volume), short);
+                largest = a.max(present, largest);
             }
         }
         largest.0[0].max(largest.0[1]).max(largest.0[2]).max(largest.0[3])

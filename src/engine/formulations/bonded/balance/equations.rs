@@ -113,7 +113,7 @@ impl Equations {
     /// area of one.
     pub fn imbalance(&self, solution: &[f64]) -> f64 {
         let is_any_inside = self.balances.iter().any(|balance| balance.is_inside);
-        let changes = self.rows.times(solution);
+        let changes = self.rows.mul(solution);
         let (mut sum, mut count) = (0.0, 0.0);
         for (balance, (rest, change)) in self.balances.iter().zip(self.rest.iter().zip(changes)) {
             let missing = (rest - change) / balance.weight;

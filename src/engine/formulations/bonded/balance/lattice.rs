@@ -95,11 +95,11 @@ impl BondLattice {
                 let source = self.ghosts.source(j);
                 let weight = self.volume[i] * self.volume[source] * f64::from(weight);
                 let signs = self.ghosts.mirror(j).unwrap_or(DVec3::ONE);
-                let times = |m: &Sym3, x: DVec3| m.to_matrix() * x;
+                let mul = |m: &Sym3, x: DVec3| m.to_matrix() * x;
                 Share {
                     other: self.numbers[source],
-                    own_part: weight * times(&self.bonds.inverse_moment[i], x_ij),
-                    other_part: weight * signs * times(&self.bonds.inverse_moment[source], signs * x_ij),
+                    own_part: weight * mul(&self.bonds.inverse_moment[i], x_ij),
+                    other_part: weight * signs * mul(&self.bonds.inverse_moment[source], signs * x_ij),
                 }
             })
         })

@@ -42,12 +42,12 @@ impl SparseRows {
     }
 
     /// A x.
-    pub fn times(&self, x: &[f64]) -> Vec<f64> {
+    pub fn mul(&self, x: &[f64]) -> Vec<f64> {
         self.rows().map(|row| row.iter().map(|(column, value)| value * x[*column as usize]).sum()).collect()
     }
 
     /// A^T y.
-    fn transposed_times(&self, y: &[f64], columns: usize) -> Vec<f64> {
+    fn transposed_mul(&self, y: &[f64], columns: usize) -> Vec<f64> {
         let mut product = vec![0.0; columns];
         for (row, y) in self.rows().zip(y) {
             row.iter().for_each(|(column, value)| product[*column as usize] += value * y);
@@ -77,7 +77,7 @@ impl LeastSquares<'_> {
     /// gradient projections (MPRGP: Dostál & Schöberl, Comput. Optim. Appl. 30 (2005) 23-43).
     pub fn solve(&self) -> Vec<f64> {
         let mut x: Vec<f64> = self.bounds.iter().map(|(least, most)| 0f64.clamp(*least, *most)).collect();
-        let goal = self.a.transposed_times(self.b, x.len());
+        let goal = self.a.transposed_mul(self.b, x.len());
         let slope = |x: &[f64]| -> Vec<f64> {
             self.product(x).iter().zip(&goal).map(|(product, goal)| product - goal).collect()
         };
@@ -121,7 +121,7 @@ impl LeastSquares<'_> {
 
     /// (A^T A + damping^2) x.
     fn product(&self, x: &[f64]) -> Vec<f64> {
-        let mut product = self.a.transposed_times(&self.a.times(x), x.len());
+        let mut product = self.a.transposed_mul(&self.a.mul(x), x.len());
         for (own, (damping, x)) in product.iter_mut().zip(self.damping.iter().zip(x)) {
             *own += damping * damping * x;
         }

@@ -200,6 +200,6 @@ fn pack_block(packed: Option<&mut [Packed]>, records: &[FlowParticle], units: Op
 /// Writes the place of a particle, and adds to `moved` how far it is from where it was.
 #[inline(always)]
 fn write<A: FourLanes>(a: A, record: &mut FlowParticle, place: Lanes4, moved: &mut Growing) {
-    moved.add(a, a.minus(place, record.place));
+    moved.add(a, a.sub(place, record.place));
     record.place = place;
 }

@@ -47,12 +47,12 @@ impl<const R: usize, const S: usize, P: RowPass<R, S>> BlockLoop for RowPassBloc
                     let other = &packed[j as usize];
                     let x = own.to(a, other, &unit).x;
                     let square = dot(a, &x, &x);
-                    let distance = a.sqrt(a.larger(square, least));
+                    let distance = a.sqrt(a.max(square, least));
                     // Neither what is beyond the support nor the particle itself.
                     let near_volume = a.where_below(square, limit, a.same(other.volume));
                     let mut volume = a.where_below(Lanes8::ZERO, square, near_volume);
                     if *hides {
-                        volume = a.times(volume, SEEN[usize::from(seen[n])]);
+                        volume = a.mul(volume, SEEN[usize::from(seen[n])]);
                     }
                     let pairs = NearPairs {
                         group,

@@ -145,7 +145,7 @@ impl HotLoop for AdvanceDensity<'_> {
             let shift = shift.map_or(0.0, |shift| 0.5 * shift[first + k].0);
             let half = -0.5 * dt * compression[k];
             let before = rho.0 + by_terms + shift;
-            let after = a.mul_add(before, half, before) / (1.0 - half);
+            let after = a.scalar_mul_add(before, half, before) / (1.0 - half);
             if shift != 0.0 {
                 change.shifted += mass[k].0
                     * (state.released(before - shift, before) + state.released(after, after + shift));

@@ -176,10 +176,10 @@ impl HotLoop for Moved<'_> {
         let shift = Lanes4::splat(SHIFT);
         let mut moved = Growing::new();
         for (&row, then) in self.rows.iter().zip(self.then) {
-            let x = a.minus(self.records[row as usize].place, *then);
+            let x = a.sub(self.records[row as usize].place, *then);
             // To the nearest periodic image.
-            let turns = a.minus(a.times_add(x, inverse, shift), shift);
-            moved.add(a, a.minus(x, a.times(period, turns)));
+            let turns = a.sub(a.mul_add(x, inverse, shift), shift);
+            moved.add(a, a.sub(x, a.mul(period, turns)));
         }
         moved.end()
     }

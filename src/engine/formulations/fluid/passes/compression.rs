@@ -129,14 +129,14 @@ impl<const D: usize> ListPairs<'_, D> {
             }
             for k in done..end {
                 let (square, factor) = self.batch.get(k);
-                sum = a.times_add(self.kernel.shapes(a, a.sqrt(square)), factor, sum);
+                sum = a.mul_add(self.kernel.shapes(a, a.sqrt(square)), factor, sum);
             }
             done = end;
         }
         if !rest.is_empty() {
             let (square, factor) = self.four::<A, P>(a, filled_up(rest), rest.len(), near, least);
-            let factor = a.times(factor, MASKS[rest.len()]);
-            sum = a.times_add(self.kernel.shapes(a, a.sqrt(square)), factor, sum);
+            let factor = a.mul(factor, MASKS[rest.len()]);
+            sum = a.mul_add(self.kernel.shapes(a, a.sqrt(square)), factor, sum);
         }
         sum
     }
@@ -156,7 +156,7 @@ impl<const D: usize> ListPairs<'_, D> {
         let limit = Lanes4::splat(kernel.support * kernel.support);
         let square = dot(a, &four.x, &four.x);
         if let Some(least) = least {
-            *least = a.smaller(square, *least);
+            *least = a.min(square, *least);
         }
         let within = a.below(square, limit) & ((1 << count) - 1);
         near.push(a, rows, within);
@@ -164,6 +164,6 @@ impl<const D: usize> ListPairs<'_, D> {
         for axis in 0..D {
             x[axis] = a.scale_add(*back, four.v[axis], x[axis]);
         }
-        (dot(a, &x, &x), a.times(four.volume, dot(a, &four.v, &x)))
+        (dot(a, &x, &x), a.mul(four.volume, dot(a, &four.v, &x)))
     }
 }

@@ -198,7 +198,7 @@ impl<const HIDDEN: bool> BlockLoop for Sifted<'_, HIDDEN> {
                     _ => bits,
                 };
                 row.push_if::<HIDDEN>(j, bits);
-                count = a.plus(count, a.where_below(square, limit, a.same(1.0)));
+                count = a.add(count, a.where_below(square, limit, a.same(1.0)));
             }
             row.close();
             for lane in 0..EIGHT {

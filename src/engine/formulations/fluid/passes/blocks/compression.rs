@@ -147,14 +147,14 @@ impl<K: PairShape, const HIDDEN: bool> BlockLoop for CompressionBlocks<'_, K, HI
                     sums.add::<A, HIDDEN>(a, j, seen, &mut near);
                 }
                 for (&j, &seen) in walls.iter().zip(seen_walls) {
-                    least = a.smaller(sums.add::<A, HIDDEN>(a, j, seen, &mut near), least);
+                    least = a.min(sums.add::<A, HIDDEN>(a, j, seen, &mut near), least);
                 }
             } else {
                 for &j in fluid {
                     sums.add::<A, HIDDEN>(a, j, ALL, &mut near);
                 }
                 for &j in walls {
-                    least = a.smaller(sums.add::<A, HIDDEN>(a, j, ALL, &mut near), least);
+                    least = a.min(sums.add::<A, HIDDEN>(a, j, ALL, &mut near), least);
                 }
             }
             near.close();
@@ -196,15 +196,15 @@ impl<K: PairShape> RateSums<'_, K> {
         near.push_if::<HIDDEN>(j, a.below(square, self.limit) & usize::from(seen));
         let mut x = pair.x;
         for axis in 0..A::AXES {
-            x[axis] = a.times_add(pair.v[axis], self.back, x[axis]);
+            x[axis] = a.mul_add(pair.v[axis], self.back, x[axis]);
         }
-        let distance = a.sqrt(a.larger(dot(a, &x, &x), self.smallest));
+        let distance = a.sqrt(a.max(dot(a, &x, &x), self.smallest));
         let mut volume = a.same(other.volume);
         if HIDDEN {
-            volume = a.times(volume, SEEN[usize::from(seen)]);
+            volume = a.mul(volume, SEEN[usize::from(seen)]);
         }
-        let approach = a.times(dot(a, &pair.v, &x), volume);
-        self.sum = a.times_add(self.kernel.shape(a, distance), approach, self.sum);
+        let approach = a.mul(dot(a, &pair.v, &x), volume);
+        self.sum = a.mul_add(self.kernel.shape(a, distance), approach, self.sum);
         square
     }
 }
