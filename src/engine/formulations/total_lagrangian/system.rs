@@ -91,9 +91,9 @@ impl Deformation {
             share_picked(&mut columns.deformation[middle..=middle], &[middle as u32], &rows);
             let frame = AffineFrame::of(rows.end, &columns.deformation[middle].0, &sites[middle]);
             frames.push(frame);
-            let (marks, plane) = (&cracks.marks[..], self.plane);
+            let (states, plane) = (&cracks.states[..], self.plane);
             let pass =
-                DeformationPass { bonds, ghosts, sites, frame: &frame, marks, velocity: &velocity, plane };
+                DeformationPass { bonds, ghosts, sites, frame: &frame, states, velocity: &velocity, plane };
             let own = DeformationRows {
                 stresses: &mut stresses[rows.clone()],
                 self_force: &mut self_force[rows.clone()],

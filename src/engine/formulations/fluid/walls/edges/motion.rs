@@ -67,8 +67,8 @@ impl EdgeMotion {
         self.touched.sort_unstable();
     }
 
-    /// Turns the sums into the motion of the particles; `half` is half of the step, s.
-    fn settle(&mut self, cloud: &FlowCloud, walls: &Range<usize>, half: f64, out: &mut Vec<EdgeParticle>) {
+    /// Computes the motion of the particles from the sums; `half` is half of the step, s.
+    fn solve_motion(&mut self, cloud: &FlowCloud, walls: &Range<usize>, half: f64, out: &mut Vec<EdgeParticle>) {
         out.clear();
         for &row in &self.touched {
             let FaceSums { moments, motion, others, behind } =
@@ -96,7 +96,7 @@ impl Run for EdgeMotion {
         self.shapes.find(&cloud, step, &mut edges.fronts)?;
         cloud.edges.fronts = std::mem::take(&mut edges.fronts);
         self.add_faces(&cloud, &walls);
-        self.settle(&cloud, &walls, half, &mut edges.particles);
+        self.solve_motion(&cloud, &walls, half, &mut edges.particles);
         let mut rates = std::mem::take(&mut cloud.compression);
         for edge in &edges.particles {
             cloud.for_each_beside(edge.row, half, |j, _, force| rates[j] -= force.dot(edge.excess));
