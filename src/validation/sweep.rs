@@ -121,7 +121,7 @@ fn run(registry: &Registry, flow: &str, source: Source, plugin: &str, steps: u64
     let [accounts, walls] = given(&simulation);
     Ok([
         Check::below(name("change of volume"), change(0), 0.01, "a liquid"),
-        Check::below(name("change of volume over room"), change(1), 0.01, "a liquid"),
+        Check::below(name("change of volume over occupied space"), change(1), 0.01, "a liquid"),
         Check::below(name("energy from accounts that take it"), accounts, 1e-3, "of all energy"),
         Check::below(name("energy from walls"), walls, WALLS, "of all energy"),
         Check::below(name("walls and bodies entered"), intrusions(&simulation), 0.5, "closed"),

@@ -166,8 +166,8 @@ impl<const D: usize, const PERIODIC: bool, const UNIFORM: bool, const BOXES: boo
             let half = if BOXES { halves[i] } else { DVec3::ZERO };
             let place = SearchBox { center: x_i, half, support: support_i };
             grid.around(x_i, if BOXES { radius + half.length() } else { radius }, ranges);
-            if found.len() < used + ranges.room {
-                found.resize((used + ranges.room) * 3 / 2, 0);
+            if found.len() < used + ranges.padded_len {
+                found.resize((used + ranges.padded_len) * 3 / 2, 0);
             }
             let found = found.as_mut_slice();
             for range in &ranges.found {

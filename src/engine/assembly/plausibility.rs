@@ -7,7 +7,7 @@ use crate::plugin::{BodyPlan, SimBuilder};
 
 /// Densities of condensed matter and gases, kg/m3.
 const DENSITIES: std::ops::RangeInclusive<f64> = 1.0..=3.0e4;
-/// Largest ratio of yield stress and Young's modulus of any metal or polymer, with room.
+/// Largest ratio of yield stress and Young's modulus of any metal or polymer, with a margin.
 const MAX_YIELD: f64 = 0.1;
 /// Speeds of sound in solids, from gels to diamond, m/s.
 const SOUND: std::ops::RangeInclusive<f64> = 0.01..=2.0e4;
@@ -17,9 +17,10 @@ const DENSE: f64 = 3.0e3;
 const DENSE_SOUND: f64 = 10.0;
 /// Gravity of a centrifuge, m/s2: more is a slip of units.
 const MAX_GRAVITY: f64 = 5.0e3;
-/// Gravity of the Earth, with room, m/s2, under which a liquid lighter than any has a density in other units.
+/// Gravity of the Earth, with a margin, m/s2, under which a liquid lighter than any has a density in other
+/// units.
 const EARTH: std::ops::RangeInclusive<f64> = 9.5..=10.5;
-/// Density of the lightest liquid, hydrogen, with room, kg/m3.
+/// Density of the lightest liquid, hydrogen, with a margin, kg/m3.
 const LIGHTEST_LIQUID: f64 = 50.0;
 /// Distance from the origin in spacings beyond which a double no longer tells neighbours apart well.
 const FARTHEST: f64 = 1.0e10;

@@ -35,7 +35,7 @@ impl FourOfColumn {
         ])
     }
 
-    /// Writes them to a column, as many as there is room for.
+    /// Writes them to a column, as many as fit.
     #[inline(always)]
     pub fn store(self, numbers: &mut [f64]) {
         let [a, b, c] = self.0;

@@ -185,8 +185,8 @@ impl PairBatch {
         self.count
     }
 
-    /// Adds the row of the next particle, of volume V_i, m3, with room for that many neighbours, to be filled
-    /// by the caller.
+    /// Adds the row of the next particle, of volume V_i, m3, with capacity for that many neighbours, to be
+    /// filled by the caller.
     #[inline(always)]
     pub fn add_row(&mut self, volume_i: f64, neighbors: usize) -> RowSlots<'_> {
         let start = self.starts[self.count];

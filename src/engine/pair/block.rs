@@ -73,7 +73,7 @@ impl BlockPairs {
     /// Room for that many neighbours, up to [`CHUNK`], in the place of those that were there; to be filled by
     /// the caller.
     #[inline(always)]
-    pub fn room(&mut self, count: usize) -> &mut [EightPairs] {
+    pub fn slots(&mut self, count: usize) -> &mut [EightPairs] {
         self.count = count;
         &mut self.pairs[..count]
     }

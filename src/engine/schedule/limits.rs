@@ -13,7 +13,7 @@ pub struct Limit {
     pub by: String,
 }
 
-/// Bytes of a text for which there is room from the start.
+/// Bytes of a text with memory from the start.
 const TEXT: usize = 128;
 
 impl Clone for Limit {

@@ -161,7 +161,7 @@ pub(crate) struct Patch {
 }
 
 impl Patch {
-    /// An empty one, with room for all of the skin.
+    /// An empty one, with capacity for all of the skin.
     pub fn new(skin: Arc<Skin>) -> Self {
         let (vertices, carriers) = (skin.vertices(), skin.carrier_count());
         let particles = carriers.min(skin.layer.len());

@@ -74,20 +74,20 @@ impl ContactNodes {
         }
     }
 
-    /// Makes room for that many candidates.
+    /// Allocates memory for that many candidates.
     pub fn reserve(&mut self, candidates: usize) {
-        fn make_room<V>(list: &mut Vec<V>, count: usize) {
+        fn reserve_total<V>(list: &mut Vec<V>, count: usize) {
             list.reserve(count.saturating_sub(list.len()));
         }
-        make_room(&mut self.ends, 2 * candidates);
+        reserve_total(&mut self.ends, 2 * candidates);
         let count = (2 * candidates).min(self.numbers.len());
-        make_room(&mut self.nodes, count);
-        make_room(&mut self.starts, count + 1);
-        make_room(&mut self.local_motions, count);
-        make_room(&mut self.forces, count);
-        make_room(&mut self.couples, count);
-        make_room(&mut self.stiffness, count);
-        make_room(&mut self.heat, count);
+        reserve_total(&mut self.nodes, count);
+        reserve_total(&mut self.starts, count + 1);
+        reserve_total(&mut self.local_motions, count);
+        reserve_total(&mut self.forces, count);
+        reserve_total(&mut self.couples, count);
+        reserve_total(&mut self.stiffness, count);
+        reserve_total(&mut self.heat, count);
     }
 
     /// Takes in the particles of a new list of candidates, which stand at these ends.

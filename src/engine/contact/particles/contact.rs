@@ -16,7 +16,7 @@ use crate::world::{Position, ReferencePosition};
 /// which they would: bonds hold them apart.
 const APART: f64 = 2.5;
 
-/// Candidates of every particle of a side for which there is room from the start.
+/// Candidates of every particle of a side with memory from the start.
 const CANDIDATES: usize = 12;
 
 /// Contact between the particles of two bodies.
@@ -41,12 +41,12 @@ impl ParticleContact {
         mirror: Map,
         periodic: Periodic,
     ) -> Self {
-        let room = CANDIDATES * first.on_a_side.min(second.on_a_side);
+        let capacity = CANDIDATES * first.on_a_side.min(second.on_a_side);
         let mut contact_nodes = [&first, &second].map(|particles| ContactNodes::new(particles.radius.len()));
-        contact_nodes.iter_mut().for_each(|contact_nodes| contact_nodes.reserve(room));
+        contact_nodes.iter_mut().for_each(|contact_nodes| contact_nodes.reserve(capacity));
         let mut contacts = ActiveContacts::default();
-        contacts.reserve(room);
-        let search = Search::new(&first.radius, &second.radius, periodic, room);
+        contacts.reserve(capacity);
+        let search = Search::new(&first.radius, &second.radius, periodic, capacity);
         Self { interaction, search, first, second, mirror, periodic, contacts, contact_nodes }
     }
 

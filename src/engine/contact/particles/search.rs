@@ -53,7 +53,7 @@ struct NearRegion {
 }
 
 impl NearRegion {
-    /// With room for that many particles.
+    /// With capacity for that many particles.
     fn of(particles: usize) -> Self {
         let (numbers, position) = (Vec::with_capacity(particles), Vec::with_capacity(particles));
         Self { filter: Filter::new(particles), numbers, position, reach: Vec::with_capacity(particles) }
@@ -85,8 +85,8 @@ impl NearRegion {
 }
 
 impl Search {
-    /// A search between particles of these radii, with room for so many pairs.
-    pub fn new(first: &[f64], second: &[f64], periodic: Periodic, room: usize) -> Self {
+    /// A search between particles of these radii, with capacity for so many pairs.
+    pub fn new(first: &[f64], second: &[f64], periodic: Periodic, capacity: usize) -> Self {
         let largest = [first, second].map(|radius| radius.iter().copied().fold(0.0, f64::max));
         Self {
             skin: SKIN * (largest[0] + largest[1]),
@@ -98,7 +98,7 @@ impl Search {
             regions: [first, second].map(|radius| NearRegion::of(radius.len())),
             search: NeighborSearch::default(),
             list: NeighborList::default(),
-            pairs: Vec::with_capacity(room),
+            pairs: Vec::with_capacity(capacity),
         }
     }
 

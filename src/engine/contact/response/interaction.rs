@@ -215,8 +215,8 @@ impl Interaction {
         let taken_up = if is_held(&state.touch) { before.spring } else { before.spring + drag_before };
         let (late, pull) = ((slip + 0.5 * dt * acceleration).dot(along), (taken_up - spring).dot(along));
         let drag = -self.dashpot(stiffness, inverse_mass(along), late, pull, dt) * along;
-        let room = limit - held;
-        (spring, if drag.length() > room { drag * (room / drag.length()) } else { drag })
+        let remaining = limit - held;
+        (spring, if drag.length() > remaining { drag * (remaining / drag.length()) } else { drag })
     }
 }
 

@@ -14,7 +14,7 @@ pub(in crate::contact) struct SkinRegion {
 }
 
 impl SkinRegion {
-    /// None yet, with room for all of a skin.
+    /// None yet, with capacity for all of a skin.
     pub fn new(skin: &Skin) -> Self {
         let (vertices, facets) = (skin.vertices() * skin.facets.axes * 3, skin.facets.corners.len());
         Self { left: 0.0, facets: Vec::with_capacity(facets), vertices: Vec::with_capacity(vertices) }

@@ -14,7 +14,7 @@ use crate::rigid::RigidBodies;
 use crate::schedule::{Step, StepError};
 use crate::symmetry::Map;
 
-/// Layers of particles of a side for which there is room from the start.
+/// Layers of particles of a side with memory from the start.
 const LAYERS: usize = 3;
 
 /// Contact of the nodes of one body with the surface of another.
@@ -50,10 +50,10 @@ impl SurfaceContact {
         let particles = sides.nodes.particles();
         let count = particles.map_or(0, |particles| particles.radius.len());
         let nearby = Nearby::new(count, particles.map_or(0.0, MemberParticles::largest));
-        let room = particles.map_or(0, |particles| LAYERS * particles.on_a_side);
+        let capacity = particles.map_or(0, |particles| LAYERS * particles.on_a_side);
         let (mut contacts, mut contact_nodes) = (ActiveContacts::default(), ContactNodes::new(count));
-        contacts.reserve(room);
-        contact_nodes.reserve(room);
+        contacts.reserve(capacity);
+        contact_nodes.reserve(capacity);
         let near = NearNodes::default();
         Self { interaction, gravity, nearby, sides, contacts, contact_nodes, near, together: None }
     }

@@ -308,7 +308,7 @@ impl Bonds {
         self.free.push(u32::try_from(row).unwrap_or(u32::MAX));
     }
 
-    /// Shares the neighbours of other bonds, with room for weights and moments, which have to be given.
+    /// Shares the neighbours of other bonds, with capacity for weights and moments, which have to be given.
     pub(in crate::formulations) fn share_topology(&mut self, other: &Self) {
         self.offsets = Arc::clone(&other.offsets);
         self.neighbors = Arc::clone(&other.neighbors);

@@ -126,8 +126,8 @@ impl<K: KernelProfile> PlaneOrSpace for LookLoop<'_, '_, K> {
             let mut count = 0;
             for list in lists[list].chunks(CHUNK) {
                 let from = start + count;
-                let room = from..from + list.len();
-                let (neighbors, squares) = (&mut rows.neighbors[room.clone()], &mut rows.weights[room]);
+                let slots = from..from + list.len();
+                let (neighbors, squares) = (&mut rows.neighbors[slots.clone()], &mut rows.weights[slots]);
                 let found = Within { neighbors, squares }.find(a, list, (own, limit), points);
                 let part = from..from + found;
                 let neighbors = &rows.neighbors[part.clone()];

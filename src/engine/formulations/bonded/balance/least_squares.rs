@@ -96,20 +96,20 @@ impl LeastSquares<'_> {
             }
             let image = self.product(&direction);
             let curvature = dot(&direction, &image);
-            let (step, room) = (dot(&gradient, &direction) / curvature, self.room(&x, &direction));
-            let taken = step.min(room);
+            let (step, max_step) = (dot(&gradient, &direction) / curvature, self.max_step(&x, &direction));
+            let taken = step.min(max_step);
             x.iter_mut().zip(&direction).for_each(|(x, p)| *x -= taken * p);
             gradient.iter_mut().zip(&image).for_each(|(g, q)| *g -= taken * q);
             self.put_on_bounds(&mut x);
             parts = self.split(&x, &gradient);
-            if step > room && !releases {
+            if step > max_step && !releases {
                 // Along the slope, others come to their bounds at once.
                 x.iter_mut().zip(&parts.free).for_each(|(x, free)| *x -= short * free);
                 self.put_on_bounds(&mut x);
                 gradient = slope(&x);
                 parts = self.split(&x, &gradient);
             }
-            if step > room || releases {
+            if step > max_step || releases {
                 direction.clone_from(&parts.free);
             } else {
                 let before = dot(&parts.free, &image) / curvature;
@@ -156,8 +156,8 @@ impl LeastSquares<'_> {
         slopes
     }
 
-    /// The longest step against a direction that stays within the bounds.
-    fn room(&self, x: &[f64], direction: &[f64]) -> f64 {
+    /// The maximum step against a direction that stays within the bounds.
+    fn max_step(&self, x: &[f64], direction: &[f64]) -> f64 {
         let of = |((x, p), (least, most)): ((&f64, &f64), &(f64, f64))| {
             if *p > 0.0 {
                 (x - least) / p

@@ -32,16 +32,16 @@ pub struct Neighbors {
 }
 
 impl FlowCloud {
-    /// Builds the lists from these positions, and the room for the neighbours within the support.
+    /// Builds the lists from these positions, and the memory for the neighbours within the support.
     fn build_lists(&mut self, positions: &[DVec3]) -> Result<(), NeighborError> {
         let Self { pairs, near, near_boundary, fluid, blocks, .. } = self;
         pairs.build(positions, *fluid, blocks.as_mut().map(|blocks| &mut blocks.lists))?;
         match blocks {
-            Some(blocks) => blocks.make_room(near),
-            None => near.make_room(&[&pairs.fluid, &pairs.walls]),
+            Some(blocks) => blocks.allocate(near),
+            None => near.allocate(&[&pairs.fluid, &pairs.walls]),
         }
         if blocks.as_ref().is_none_or(|blocks| blocks.hides) {
-            near_boundary.make_room(&[&pairs.boundary]);
+            near_boundary.allocate(&[&pairs.boundary]);
         }
         self.find_halo();
         Ok(())

@@ -195,7 +195,7 @@ impl<const D: usize> PairsOfRow<'_, D> {
         }
     }
 
-    /// The same between fluids, and puts the geometry of the pairs into `room`.
+    /// The same between fluids, and puts the geometry of the pairs into `slots`.
     ///
     /// Two loops: in one, a neighbour takes some ninety cycles from its index to its sum, and a processor
     /// looks ahead two or three fours. Taken apart, one gathers and one takes roots, each with short chains

@@ -133,7 +133,7 @@ impl BlockLists {
         let is_own = |block| others.is_own(blocks + block);
         of_boundaries.join(of_others, is_own, boundary, particles, joined);
         pack_places(places, &positions[..particles as usize], units);
-        fluid.make_room(&[candidates]);
+        fluid.allocate(&[candidates]);
         if sides.is_some() {
             fluid.keep_lanes();
             write_seen(seen_walls, of_fluids, of_blocks, walls);

@@ -141,7 +141,7 @@ impl<K: PairShape> BlockLoop for ForceBlocks<'_, K> {
                 for chunk in row.chunks(CHUNK) {
                     let of_chunk = take_bits(&mut seen, chunk.len());
                     let chunk = Chunk { row: chunk, seen: of_chunk, between };
-                    let kept = terms.map(|_| pairs.room(chunk.row.len()));
+                    let kept = terms.map(|_| pairs.slots(chunk.row.len()));
                     of_block.add(a, chunk, kept, &mut sums);
                     if let Some(terms) = terms {
                         if terms.reads.kernel {

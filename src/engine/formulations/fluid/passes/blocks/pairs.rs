@@ -100,7 +100,7 @@ impl<'a, K: PairShape> PairsOfBlock<'a, K> {
         self.cloud.viscosities.friction(self.viscosity)
     }
 
-    /// Adds some neighbours to the forces, and puts the geometry of the pairs into `kept`, if there is room
+    /// Adds some neighbours to the forces, and puts the geometry of the pairs into `kept`, if there are slots
     /// to keep it.
     #[inline(always)]
     pub fn add<A: EightLanes>(
