@@ -74,11 +74,11 @@ pub fn execute(arguments: &BenchArguments, registry: &Registry) -> Result<(), Co
     if !arguments.json {
         say(&report::heading(&machine::describe()));
     }
-    let least = Duration::from_secs_f64(arguments.seconds);
+    let duration = Duration::from_secs_f64(arguments.seconds);
     for &particles in &arguments.particles {
         for case in &cases {
             for (ranks, threads) in pairs(&arguments.ranks, &arguments.threads) {
-                let set_up = BenchSetUp { case, particles, ranks, threads, least };
+                let set_up = BenchSetUp { case, particles, ranks, threads, duration };
                 let measurement = match arguments.here {
                     true => Measurement::take(&set_up, registry)?,
                     false => apart::take(&set_up, instructions)?,

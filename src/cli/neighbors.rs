@@ -13,9 +13,9 @@ pub struct NeighborCounts {
     /// Mean.
     pub mean: f64,
     /// Minimum.
-    pub least: usize,
+    pub min: usize,
     /// Maximum.
-    pub most: usize,
+    pub max: usize,
 }
 
 impl NeighborCounts {
@@ -44,8 +44,8 @@ impl NeighborCounts {
     }
 
     fn of(counts: &[usize]) -> Option<Self> {
-        let (least, most) = (*counts.iter().min()?, *counts.iter().max()?);
+        let (min, max) = (*counts.iter().min()?, *counts.iter().max()?);
         let mean = counts.iter().sum::<usize>() as f64 / counts.len() as f64;
-        Some(Self { mean, least, most })
+        Some(Self { mean, min, max })
     }
 }

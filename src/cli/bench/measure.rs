@@ -30,7 +30,7 @@ pub struct BenchSetUp<'a> {
     /// Threads of each.
     pub threads: u16,
     /// Minimum wall time of the measurement.
-    pub least: Duration,
+    pub duration: Duration,
 }
 
 /// Result of a measurement.
@@ -94,7 +94,7 @@ impl Measurement {
     }
 
     fn take_here(set_up: &BenchSetUp<'_>, registry: &Registry) -> Result<Self, CommandFailure> {
-        let BenchSetUp { case, particles, ranks, threads, least } = *set_up;
+        let BenchSetUp { case, particles, ranks, threads, duration } = *set_up;
         let failed = |error: &dyn std::fmt::Display| CommandFailure::Run(format!("{}: {error}", case.name));
         let before = resident_bytes();
         let begun = Instant::now();
@@ -109,7 +109,7 @@ impl Measurement {
         let (first, timers, short) = (sim.clock().step, timers(&sim), short_steps(&sim));
         let (processor, traffic) = (processor_seconds(), ranks::traffic());
         let begun = Instant::now();
-        while ranks::any(begun.elapsed() < least) || sim.clock().step == first {
+        while ranks::any(begun.elapsed() < duration) || sim.clock().step == first {
             sim.step().map_err(|error| failed(&error))?;
         }
         let seconds = begun.elapsed().as_secs_f64();

@@ -84,7 +84,7 @@ impl BodyReport {
                 && view.read::<PlasticStrain>().is_ok()
                 && has_plasticity(scene, &body.material),
             driven: is_driven(&view.read::<Mobility>().map_err(failed)?[rows], scene.dimension),
-            neighbours: count.map(|count| (count.mean, count.least, count.most)),
+            neighbours: count.map(|count| (count.mean, count.min, count.max)),
             plugins: plugins.map(|item| item.name().to_owned()).collect(),
         })
     }

@@ -326,7 +326,7 @@ impl SolidBodies {
             match reference(k) {
                 None => law.stable_step_factor(&stretches),
                 Some(reference) => {
-                    stretches::smallest_since(gradient, reference, damage) / law.wave_factor(&stretches)
+                    stretches::min_stretch_since(gradient, reference, damage) / law.wave_factor(&stretches)
                 }
             }
         })

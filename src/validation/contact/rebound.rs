@@ -48,7 +48,7 @@ fn rebound(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         let (momentum, angular) = momenta(&simulation)?;
         let mut deepest = f64::INFINITY;
         let balance = run(&mut simulation, |simulation| {
-            deepest = deepest.min(least_distance(simulation)?);
+            deepest = deepest.min(min_distance(simulation)?);
             Ok(())
         })?;
         let (after, turning) = momenta(&simulation)?;
@@ -105,7 +105,7 @@ fn mean_velocity(simulation: &Simulation) -> Result<DVec3> {
 }
 
 /// Minimum distance of a particle of the block from the surface, negative inside, m.
-fn least_distance(simulation: &Simulation) -> Result<f64> {
+fn min_distance(simulation: &Simulation) -> Result<f64> {
     let (view, rows) = simulation.world().body_view(body(simulation, "block")?);
     let position = view.read::<Position>()?;
     let bodies = simulation.resources().get::<RigidBodies>();

@@ -93,7 +93,7 @@ fn lamb_oseen(registry: &Registry, across: usize) -> Result<Check> {
         let exact = |r: f64| 0.1 / r * (1.0 - (-r * r / core).exp());
         swirl.iter().map(|&(r, u)| (u - exact(r)).powi(2)).sum()
     };
-    let core = least(misfit, 0.005, 0.06);
+    let core = minimizer(misfit, 0.005, 0.06);
     let viscosity = (core - 0.01) / (4.0 * simulation.clock().time);
     let check = Check::new(
         "effective viscosity of the Lamb-Oseen vortex",
@@ -107,7 +107,7 @@ fn lamb_oseen(registry: &Registry, across: usize) -> Result<Check> {
 }
 
 /// Position of the minimum of a function, by trisection.
-fn least(of: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+fn minimizer(of: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     for _ in 0..60 {
         let third = (high - low) / 3.0;
         if of(low + third) < of(high - third) { high -= third } else { low += third }

@@ -7,7 +7,7 @@ use super::contacts::Numbers;
 use super::filter::BLOCKS_OF_TEST;
 use crate::contact::bodies::Members;
 use crate::contact::response::PairKey;
-use crate::parallel::{Largest, Picked, for_each_block, for_each_block_in_tasks, sum_over_blocks};
+use crate::parallel::{Maximum, Picked, for_each_block, for_each_block_in_tasks, sum_over_blocks};
 use crate::solids::{LocalMotion, SolidPhase};
 use crate::world::{Force, Mass, Temperature};
 
@@ -194,7 +194,7 @@ impl ContactNodes {
 
     /// The largest stiffness over mass of the contacts of a particle, 1/s2.
     pub fn stiffest(&self) -> f64 {
-        sum_over_blocks(&self.stiffness[..], &|_, stiffness: &[f64]| Largest::of(stiffness.iter().copied())).0
+        sum_over_blocks(&self.stiffness[..], &|_, stiffness: &[f64]| Maximum::of(stiffness.iter().copied())).0
     }
 
     /// Adds what acts on the neighbourhoods; `first` is the first row of the body.

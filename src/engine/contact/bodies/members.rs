@@ -43,13 +43,13 @@ impl MemberParticles {
         Self { body: body.id, radius, deform, on_a_side }
     }
 
-    /// The largest radius, m.
-    pub fn largest(&self) -> f64 {
+    /// The maximum radius, m.
+    pub fn max_radius(&self) -> f64 {
         self.radius.iter().copied().fold(0.0, f64::max)
     }
 
     /// The minimum radius, m.
-    pub fn least(&self) -> f64 {
+    pub fn min_radius(&self) -> f64 {
         self.radius.iter().copied().fold(f64::INFINITY, f64::min)
     }
 }

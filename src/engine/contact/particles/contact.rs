@@ -2,12 +2,12 @@
 
 use super::pairs::{ContactPairs, PairPush};
 use super::search::{Crowd, Search};
-use crate::contact::active::{ActiveContacts, ContactEnd, ContactNodes, Least};
+use crate::contact::active::{ActiveContacts, ContactEnd, ContactNodes, MinimumLength};
 use crate::contact::bodies::{MemberColumns, MemberParticles, MotionBounds, Nearness, failed};
 use crate::contact::response::time_step::{self, Touches};
 use crate::contact::response::{ContactEnergy, History, Interaction, PairKey};
 use crate::neighbors::Periodic;
-use crate::parallel::{Largest, sum_over_blocks};
+use crate::parallel::{Maximum, sum_over_blocks};
 use crate::schedule::{Step, StepError};
 use crate::symmetry::Map;
 use crate::world::{Position, ReferencePosition};
@@ -28,7 +28,7 @@ pub(in crate::contact) struct ParticleContact {
     mirror: Map,
     periodic: Periodic,
     search: Search,
-    pub contacts: ActiveContacts<Nearness, PairPush, Least>,
+    pub contacts: ActiveContacts<Nearness, PairPush, MinimumLength>,
     /// The particles of both sides that touch; of a body with itself all are on the first side.
     pub contact_nodes: [ContactNodes; 2],
 }
@@ -51,8 +51,8 @@ impl ParticleContact {
     }
 
     /// Minimum period of the domain with which the contact works, m.
-    pub fn least_period(&self) -> f64 {
-        self.search.least_period()
+    pub fn min_period(&self) -> f64 {
+        self.search.min_period()
     }
 
     fn find(&mut self, step: &Step<'_>) -> Result<(), StepError> {
@@ -139,7 +139,7 @@ impl ParticleContact {
         };
         let Self { contacts, contact_nodes, search, .. } = self;
         let least =
-            contacts.find(search.pairs(), |key, least: &mut Least, (): &mut ()| pairs.touching(key, least));
+            contacts.find(search.pairs(), |key, least: &mut MinimumLength, (): &mut ()| pairs.touching(key, least));
         let moving = !pairs.interaction.is_elastic();
         contact_nodes[0].look(&pairs.first, contacts.numbers(), moving);
         contact_nodes[1].look(&pairs.second, contacts.numbers(), moving);
@@ -152,7 +152,7 @@ impl ParticleContact {
         let pushes = contacts.pushes();
         let load = |number: usize, end: ContactEnd| pairs.load(&pushes[number], end);
         contact_nodes.iter_mut().for_each(|nodes| nodes.add_up(contacts.numbers(), &load));
-        Ok((energies, least.0.min(self.first.least() + self.second.least())))
+        Ok((energies, least.0.min(self.first.min_radius() + self.second.min_radius())))
     }
 
     /// Largest squared frequency of a pair that touches, 1/s2.
@@ -160,7 +160,7 @@ impl ParticleContact {
         let [one, other] = &self.contact_nodes;
         let other = if self.first.body == self.second.body { one } else { other };
         let stiffest = sum_over_blocks(self.contacts.met(), &|_, met: &[(PairKey, Nearness)]| {
-            Largest::of(met.iter().map(|((i, j), _)| one.stiffness(*i) + other.stiffness(*j)))
+            Maximum::of(met.iter().map(|((i, j), _)| one.stiffness(*i) + other.stiffness(*j)))
         });
         stiffest.0
     }

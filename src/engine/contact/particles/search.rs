@@ -117,7 +117,7 @@ impl Search {
     }
 
     /// Minimum period with which each particle sees one image of another, m.
-    pub fn least_period(&self) -> f64 {
+    pub fn min_period(&self) -> f64 {
         2.0 * (self.largest[0] + self.largest[1] + self.skin)
     }
 

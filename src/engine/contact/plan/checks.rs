@@ -67,13 +67,13 @@ impl Named<'_> {
     }
 
     /// A particle or facet must not see two images of another: periods must have at least that length, m.
-    pub fn refuse_short_periods(&self, least: f64, sim: &SimBuilder<'_>) -> Result<(), Vec<Problem>> {
+    pub fn refuse_short_periods(&self, min_period: f64, sim: &SimBuilder<'_>) -> Result<(), Vec<Problem>> {
         let periodic = sim.periodic();
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
             let length = periodic.lengths()[axis];
-            if periodic.axes()[axis] && length < least {
+            if periodic.axes()[axis] && length < min_period {
                 let message = format!(
-                    "the period along {name} must be at least {least} m for this contact, found {length} m"
+                    "the period along {name} must be at least {min_period} m for this contact, found {length} m"
                 );
                 return Err(vec![self.problem(message, "use a longer domain, or smaller particles")]);
             }

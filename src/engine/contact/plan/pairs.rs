@@ -66,7 +66,7 @@ impl Planner<'_> {
             if let (Some(one), Some(other)) = (self.skin(first, named), self.skin(second, named)) {
                 let interaction = self.interaction(named, ContactSurface::Skin)?;
                 let pair = SkinPair::new(interaction, [one.clone(), other.clone()], self.sim.periodic());
-                named.refuse_short_periods(pair.least_period(), self.sim)?;
+                named.refuse_short_periods(pair.min_period(), self.sim)?;
                 let skins = Touching::Skins(Box::new(pair));
                 return self.until_failure(skins, &[(first, one), (second, other)], &|planner| {
                     planner.of_particles(named, [first, second])
@@ -97,7 +97,7 @@ impl Planner<'_> {
             bodies.iter_mut().for_each(|particles| particles.deform = deform);
             let interaction = self.interaction(named, ContactSurface::Particles)?;
             let pair = ParticleContact::new(interaction, bodies, mirror, self.sim.periodic());
-            named.refuse_short_periods(pair.least_period(), self.sim)?;
+            named.refuse_short_periods(pair.min_period(), self.sim)?;
             pairs.push(Touching::Particles(Box::new(pair)));
         }
         Ok(pairs)

@@ -79,7 +79,7 @@ impl NearSkins {
     }
 
     /// Minimum period of a domain in which no facet has two images near another one, m.
-    pub fn least_period(skins: [&Skin; 2]) -> f64 {
+    pub fn min_period(skins: [&Skin; 2]) -> f64 {
         let spacing = 0.5 * (skins[0].spacing + skins[1].spacing);
         2.0 * (NEAR + 2.0 * STRETCHED * LONGEST[skins[0].facets.axes - 2]) * spacing
     }

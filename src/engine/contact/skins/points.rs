@@ -8,11 +8,11 @@
 
 use glam::DVec3;
 
-use crate::contact::active::Least;
+use crate::contact::active::MinimumLength;
 use crate::contact::bodies::ContactSides;
 use crate::contact::laws::{Spring, Touch};
 use crate::contact::response::Interaction;
-use crate::parallel::{BlockSum, Largest};
+use crate::parallel::{BlockSum, Maximum};
 use crate::rigid::RigidBody;
 use crate::skins::{Patch, QuadratureRule, Skin};
 
@@ -121,9 +121,9 @@ impl Pressed {
 #[derive(Clone, Copy, Default)]
 pub(super) struct Extremes {
     /// Gap of the nearest point that does not touch, m.
-    pub gap: Least,
+    pub gap: MinimumLength,
     /// Stiffness over the area, N/m3 (N/m2 in two dimensions).
-    pub stiffest: Largest,
+    pub stiffest: Maximum,
 }
 
 impl BlockSum for Extremes {
@@ -256,7 +256,7 @@ impl<'a> Pressing<'a> {
     pub fn spring(&self, seen: &ToolView, area: f64, extremes: &mut Extremes) -> Spring {
         let touch = Touch { overlap: -seen.distance, ..self.touch };
         let spring = self.interaction.spring(&touch, area / self.usual, seen.approach, self.dt);
-        extremes.stiffest.add(&Largest(spring.stiffness / area));
+        extremes.stiffest.add(&Maximum(spring.stiffness / area));
         spring
     }
 

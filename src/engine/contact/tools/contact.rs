@@ -49,7 +49,7 @@ impl SurfaceContact {
     pub fn new(interaction: Interaction, sides: ContactSides, gravity: f64) -> Self {
         let particles = sides.nodes.particles();
         let count = particles.map_or(0, |particles| particles.radius.len());
-        let nearby = Nearby::new(count, particles.map_or(0.0, MemberParticles::largest));
+        let nearby = Nearby::new(count, particles.map_or(0.0, MemberParticles::max_radius));
         let capacity = particles.map_or(0, |particles| LAYERS * particles.on_a_side);
         let (mut contacts, mut contact_nodes) = (ActiveContacts::default(), ContactNodes::new(count));
         contacts.reserve(capacity);
@@ -152,7 +152,7 @@ impl SurfaceContact {
         let pair = [sides.first, sides.second];
         match of_particles {
             Some(particles) if expected == 0.0 => {
-                let reach = 2.0 * near.least.0.min(particles.least());
+                let reach = 2.0 * near.distance.0.min(particles.min_radius());
                 let touches = Touches { squared, stored: energies.stored, speed, reach };
                 time_step::propose(step, pair, &touches)?;
             }

@@ -6,7 +6,7 @@ use super::face_share::FaceShare;
 use super::nearby::NEAR;
 use super::reaction::NodePush;
 use super::together::{Spot, Together};
-use crate::contact::active::Least;
+use crate::contact::active::MinimumLength;
 use crate::contact::bodies::{ContactSides, Nearness, NodeMotion, NodeView};
 use crate::contact::laws::Touch;
 use crate::contact::response::time_step::NormalMotion;
@@ -37,8 +37,8 @@ impl NodeTouch {
 /// Data of the nodes near the surface for the time step.
 #[derive(Clone, Copy, Default)]
 pub(in crate::contact) struct NearNodes {
-    /// Minimum way to the centre of a particle near the surface that just touches, m.
-    pub least: Least,
+    /// Minimum distance of the surface and the centre of a particle that just touches it, m.
+    pub distance: MinimumLength,
     /// The first particle near the surface that nothing moves but conditions.
     pub held: Option<usize>,
     /// How many nodes near it have no mass of their own: points of a rigid body, and such particles.
@@ -49,7 +49,7 @@ pub(in crate::contact) struct NearNodes {
 
 impl BlockSum for NearNodes {
     fn add(&mut self, next: &Self) {
-        self.least.add(&next.least);
+        self.distance.add(&next.distance);
         self.held = self.held.or(next.held);
         self.massless += next.massless;
         self.landing.add(&next.landing);
@@ -91,7 +91,7 @@ impl OnSurface<'_> {
         let held = nodes.is_held(i).then_some(i);
         let massless = usize::from(held.is_some() || matches!(nodes, NodeView::Rigid(_)));
         let landing = self.landing(i, held.is_some(), [nearest.point, own_place - center], &near);
-        near_nodes.add(&NearNodes { least: Least(nodes.radius(i) / near.scale), held, massless, landing });
+        near_nodes.add(&NearNodes { distance: MinimumLength(nodes.radius(i) / near.scale), held, massless, landing });
         let touches = near.overlap > 0.0 && nodes.reaches(i, center, nearest.normal, tool);
         // Where the body of the node has it, a period away from the image that touches.
         touches.then(|| {

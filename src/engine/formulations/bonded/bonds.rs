@@ -287,7 +287,7 @@ impl Bonds {
             let own = match ellipsoids.map(|all| &all.0[i]) {
                 None => step(i, inverse.trace()),
                 // Few particles need their shortest axis.
-                Some(own) if step(i, own.trace(inverse, own.least_axis())) >= least => return least,
+                Some(own) if step(i, own.trace(inverse, own.axis_bound())) >= least => return least,
                 Some(own) => step(i, own.trace(inverse, own.shortest())),
             };
             if own.is_finite() { least.min(own) } else { least }

@@ -81,7 +81,7 @@ impl Ellipsoid {
     }
 
     /// A bound below the shortest half axis.
-    pub fn least_axis(&self) -> f64 {
+    pub fn axis_bound(&self) -> f64 {
         let deviator = self.tensor.deviator();
         let most = self.tensor.trace() / 3.0 + 2.0 * (deviator.double_dot(&deviator) / 6.0).sqrt();
         ((1.0 + ROUNDING) * most).sqrt().recip()
@@ -157,7 +157,7 @@ mod tests {
             let longest = stretch.max(1.0 / stretch).sqrt();
             assert!(found > longest * (1.0 - 1e-12) && found < 1.03 * longest, "{found} for {longest}");
             let shortest = stretch.min(1.0 / stretch).sqrt();
-            let least = Ellipsoid::new(Ellipsoid::following(&f)).least_axis();
+            let least = Ellipsoid::new(Ellipsoid::following(&f)).axis_bound();
             assert!(least <= shortest && least > 0.9 * shortest, "{least} for {shortest}");
         }
         let r = DVec3::new(0.3, -1.0, 2.0);

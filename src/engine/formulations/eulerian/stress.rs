@@ -13,7 +13,7 @@ use super::near::{LookAtBlock, NearbyMotion, NeighborRows};
 use super::particle::EulerianParticle;
 use super::rows::{EulerianKernel, EulerianRows, PointColumns};
 use crate::linalg::Sym3;
-use crate::parallel::{Lanes4, Largest, split_by_rows, sum_over_blocks};
+use crate::parallel::{Lanes4, Maximum, split_by_rows, sum_over_blocks};
 use crate::removal::REMOVED_ENERGY;
 use crate::schedule::{Access, AccountKind, Run, Step, StepError};
 use crate::solids::{
@@ -214,14 +214,14 @@ impl Stress {
         for (own, body) in self.solids.iter().zip(&lists.bodies) {
             let rows = (&near.around[body.rows.clone()], &control.stiffness[body.rows.clone()]);
             type Rows<'a> = (&'a [NearbyMotion], &'a [f64]);
-            let fastest: Largest = sum_over_blocks(rows, &|_, (around, stiffness): Rows<'_>| {
+            let fastest: Maximum = sum_over_blocks(rows, &|_, (around, stiffness): Rows<'_>| {
                 let step = |(of, stiffness): (&NearbyMotion, &f64)| {
                     let inverse = of.inverse_moment.trace() / axes;
                     1.0 / own.estimate.stable_step_with_pairs(of.weight_sum, inverse, *stiffness)
                 };
                 let with_stress =
                     around.iter().zip(stiffness).filter(|(of, _)| of.inverse_moment != Sym3::ZERO);
-                Largest::of(with_stress.map(step))
+                Maximum::of(with_stress.map(step))
             });
             stable_step.push(1.0 / fastest.0);
         }

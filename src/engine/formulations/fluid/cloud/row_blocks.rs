@@ -27,7 +27,7 @@ impl<const R: usize, const S: usize, P: RowPass<R, S>> BlockLoop for RowPassBloc
         let unit = [a.splat(units.length.x), a.splat(units.length.y), a.splat(units.length.z)];
         let kernel = &cloud.kernel;
         let limit = a.splat(kernel.support * kernel.support);
-        let least = a.splat(kernel.least_square());
+        let least = a.splat(kernel.min_square());
         let among = pass.among();
         let first_group = cloud.group_at(among.start);
         for block in lists.table.of_rows(&(first..first + out.len())) {

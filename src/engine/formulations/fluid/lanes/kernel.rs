@@ -159,12 +159,12 @@ impl FluidKernel {
         let limit = self.support * self.support;
         let square = a.scale_add(limit, fill, square);
         let volume = a.where_below(square, a.splat(limit), volume);
-        (a.max(square, a.splat(self.least_square())), volume)
+        (a.max(square, a.splat(self.min_square())), volume)
     }
 
     /// Square of the length of pairs in one place, m2: one may divide by it.
     #[inline(always)]
-    pub(in crate::formulations::fluid) fn least_square(&self) -> f64 {
+    pub(in crate::formulations::fluid) fn min_square(&self) -> f64 {
         NO_LENGTH * self.support * self.support
     }
 

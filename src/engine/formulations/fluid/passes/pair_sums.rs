@@ -259,7 +259,7 @@ impl<const D: usize> PairsOfRow<'_, D> {
         rows: &[[u32; 4]],
         forces: &mut Forces<D>,
     ) {
-        let least = Lanes4::splat(self.kernel.least_square());
+        let least = Lanes4::splat(self.kernel.min_square());
         let spin = self.pair_spin(Between::Fluids);
         for k in 0..pairs.len() {
             let four = &mut pairs[k];

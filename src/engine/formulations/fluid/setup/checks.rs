@@ -98,19 +98,19 @@ pub fn wall_is_thick(
     periodic: &Periodic,
 ) -> Result<Option<String>, SetupError> {
     is_fine(body, spacing)?;
-    let Some(Thin { least, at, is_most }) = Thickness::of(body, support, periodic)?.thin(EDGES) else {
+    let Some(Thin { thickness, at, is_widespread }) = Thickness::of(body, support, periodic)?.thin(EDGES) else {
         return Ok(None);
     };
     let layers = (support / body.spacing - 1e-9).ceil();
     let message = format!(
         "`{}` is {:.0} layers of particles thick at {}, thinner than the kernel support of the fluid, {}",
         body.name,
-        least / body.spacing,
+        thickness / body.spacing,
         place(at),
         quantity(support, "m")
     );
     let help = format!("make it at least {layers} layers thick, {}", quantity(layers * body.spacing, "m"));
-    if is_most {
+    if is_widespread {
         return Err(fault(body, "shape", message, &help));
     }
     Ok(Some(format!("{message}: fluid on one side acts on that on the other; {help}")))

@@ -28,7 +28,7 @@ impl FlowCloud {
             back: -0.5 * dt,
             reach: self.reach * self.reach,
             limit: self.kernel.support * self.kernel.support,
-            least: self.kernel.least_square(),
+            least: self.kernel.min_square(),
             scale: self.kernel.weight_scale(),
             plane: self.plane,
         };

@@ -135,7 +135,7 @@ impl<'a, K: PairShape> PairsOfBlock<'a, K> {
     ) {
         let Self { packed, unit, own, cloud: FlowCloud { kernel, .. }, .. } = self;
         let (scale, limit) = (a.splat(kernel.weight_scale()), a.splat(kernel.support * kernel.support));
-        let least = a.splat(kernel.least_square());
+        let least = a.splat(kernel.min_square());
         let share = between.shares()[0];
         let BlockForces { mut pressure, mut viscous, mut wall } = *sums;
         for n in 0..row.len() {
