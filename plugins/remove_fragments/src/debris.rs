@@ -13,7 +13,7 @@ pub(crate) fn add(sim: &mut SimBuilder<'_>, bodies: Vec<BodyId>, minimum_volume_
     let set = BodySet::new(bodies.iter().copied());
     sim.add_column_to::<IsDebris>(&set);
     sim.add_removal_rule(Debris { bodies: bodies.clone() });
-    let marking = Marking { bodies, minimum_volume_ratio, pieces: Pieces { particles, found: Vec::new() } };
+    let marking = Marking { bodies, minimum_volume_ratio, pieces: Fragments { particles, found: Vec::new() } };
     sim.add_system(
         System::new(Stage::PostStep, "debris", marking)
             .on_bodies(set)
@@ -29,7 +29,7 @@ pub(crate) fn add(sim: &mut SimBuilder<'_>, bodies: Vec<BodyId>, minimum_volume_
 struct Marking {
     bodies: Vec<BodyId>,
     minimum_volume_ratio: f64,
-    pieces: Pieces,
+    pieces: Fragments,
 }
 
 impl Run for Marking {
@@ -51,14 +51,14 @@ impl Run for Marking {
 }
 
 /// Finds pieces of few particles.
-struct Pieces {
+struct Fragments {
     /// Pieces of fewer particles are small.
     particles: usize,
     /// Rows found in the piece of a particle; at most `particles` rows.
     found: Vec<usize>,
 }
 
-impl Pieces {
+impl Fragments {
     /// Whether a particle belongs to a piece of fewer particles. A particle with so many neighbours that it
     /// cannot ends the search at once, so that an intact body costs one pass over its rows.
     fn is_small(&mut self, solid: &dyn SolidPhase, row: usize) -> bool {

@@ -32,7 +32,7 @@ pub struct Probe {
     /// Reduction over the particles of `on`, or over its `surface`. The default is the mean, for forces the
     /// sum.
     #[serde(default)]
-    pub take: Option<Take>,
+    pub take: Option<Reduction>,
     /// A second position, whose value is subtracted.
     #[serde(default)]
     pub relative_to: Option<RelativeTo>,
@@ -67,7 +67,7 @@ pub struct Line {
 
 /// Reduction over a selection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-pub enum Take {
+pub enum Reduction {
     /// The mean: every particle has the same weight, a `surface` is weighted by area.
     Mean,
     /// The sum over the particles.

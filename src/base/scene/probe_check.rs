@@ -1,7 +1,7 @@
 //! Checks of the probes of a scene before anything is built.
 
 use super::requirements::{in_plane, positive_time, twice, unknown_body, usable_name};
-use super::{Probe, Problem, Quantity, Scene, Take};
+use super::{Probe, Problem, Quantity, Scene, Reduction};
 
 /// Maximum number of points on a line.
 const MAX_POINTS: u32 = 1000;
@@ -75,7 +75,7 @@ fn place(probe: &Probe, i: usize) -> Option<Problem> {
 /// Problem with the other fields of a probe.
 fn options(probe: &Probe, i: usize) -> Option<Problem> {
     let is_of_field = probe.quantity.at_point().is_none();
-    let extreme = matches!(probe.take, Some(Take::Minimum | Take::Maximum));
+    let extreme = matches!(probe.take, Some(Reduction::Minimum | Reduction::Maximum));
     let (field, message, help) = if probe.follows.is_some() && (probe.on.is_some() || !is_of_field) {
         let help = "points are given by `at` or `line`; fields, positions, displacements and velocities have values at points of bodies";
         ("follows", "`follows` needs a point of a body and a field there", help)

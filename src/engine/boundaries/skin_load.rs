@@ -3,9 +3,9 @@
 //! The work of a step is the mean of the forces at its two ends times the displacement of the vertices.
 //!
 //! On bodies that can fail, loads on a `face` act so until the first particle that carries it fails, and from
-//! that step on they act on the selected particles ([`OnceBroken`](super::broken_skin::OnceBroken)). Loads on
-//! another part of the `surface` have no such particles: they leave out the facets whose particles have
-//! failed.
+//! that step on they act on the selected particles ([`BrokenSkinLoad`](super::broken_skin::BrokenSkinLoad)).
+//! Loads on another part of the `surface` have no such particles: they leave out the facets whose particles
+//! have failed.
 
 use std::sync::Arc;
 

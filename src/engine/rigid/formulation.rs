@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::body::{RigidBodies, RigidBody, RigidParts, RigidState};
-use super::constraint::{Constraint, DrivenBody, DrivenRotation, HalvedBody, Turning};
+use super::constraint::{Constraint, DrivenBody, DrivenRotation, HalvedBody, RotationConstraint};
 use super::inertia::MassProperties;
 use super::nodes::{Nodes, RigidNode};
 use super::rotation::Inertia;
@@ -107,7 +107,7 @@ impl Constraint {
     fn holds(&self, halved: &HalvedBody, sim: &SimBuilder<'_>) -> Result<(), SetupError> {
         let HalvedBody { body, axis } = *halved;
         let is_held =
-            self.drives.iter().any(|drive| drive.axes[axis]) && !matches!(self.turning, Turning::Free);
+            self.drives.iter().any(|drive| drive.axes[axis]) && !matches!(self.turning, RotationConstraint::Free);
         if is_held {
             return Ok(());
         }
@@ -153,14 +153,14 @@ impl Rigid {
                 let message = "the rotation of the body is prescribed by a condition, and stated here too";
                 return Err(SetupError::parameter(at(""), message, "leave out `rotation`"));
             }
-            (Some(driven), None) => Turning::Driven(driven),
-            (None, Some(Rotation::Free)) => Turning::Free,
-            (None, Some(Rotation::Held)) => Turning::Held,
+            (Some(driven), None) => RotationConstraint::Driven(driven),
+            (None, Some(Rotation::Free)) => RotationConstraint::Free,
+            (None, Some(Rotation::Held)) => RotationConstraint::Held,
             (None, Some(Rotation::About(axis))) => {
-                Turning::About(checked_axis(axis.0, sim.dimension(), &at(".rotation"))?)
+                RotationConstraint::About(checked_axis(axis.0, sim.dimension(), &at(".rotation"))?)
             }
-            (None, None) if drives.is_empty() => Turning::Free,
-            (None, None) => Turning::Held,
+            (None, None) if drives.is_empty() => RotationConstraint::Free,
+            (None, None) => RotationConstraint::Held,
         };
         Ok(Constraint { drives, turning })
     }

@@ -146,9 +146,9 @@ impl SkinView<'_> {
 
     /// The same where the shares follow the deformation: those without a share need not be there.
     fn look_at_following(&self, vertex: u32) -> (DVec3, bool) {
-        let Looked(place, missing) = self.mean(vertex, Looked::default(), |share, carrier, row| {
+        let VertexPosition(place, missing) = self.mean(vertex, VertexPosition::default(), |share, carrier, row| {
             let missing = share > 0.0 && self.removed[row] != Removed::NO;
-            Looked(share * self.carried(carrier, row), u32::from(missing))
+            VertexPosition(share * self.carried(carrier, row), u32::from(missing))
         });
         (place, missing == 0)
     }
@@ -182,9 +182,9 @@ impl SkinView<'_> {
 
 /// Where a vertex is, m, and how many of its carriers have been removed.
 #[derive(Clone, Copy, Default)]
-struct Looked(DVec3, u32);
+struct VertexPosition(DVec3, u32);
 
-impl std::ops::Add for Looked {
+impl std::ops::Add for VertexPosition {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {

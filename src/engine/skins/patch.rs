@@ -37,7 +37,7 @@ pub(crate) struct Wanted {
 
 /// Forces passed on to particles.
 #[derive(Clone, Copy)]
-struct HandedOn<'a> {
+struct CarrierForces<'a> {
     skin: &'a Skin,
     forces: &'a [DVec3],
     couples: Option<&'a [DMat3]>,
@@ -49,7 +49,7 @@ struct HandedOn<'a> {
 
 /// The loop over particles, from the first of a block on.
 struct OnParticles<'a> {
-    all: HandedOn<'a>,
+    all: CarrierForces<'a>,
     first: usize,
     on: (&'a mut [(DVec3, DMat3)], &'a mut [DMat3]),
 }
@@ -73,7 +73,7 @@ impl HotLoop for OnParticles<'_> {
     }
 }
 
-impl HandedOn<'_> {
+impl CarrierForces<'_> {
     /// The force, N, and the couple, N m, on a particle at these ends.
     #[inline(always)]
     fn on_particle<A: FourLanes>(&self, a: A, ends: &[End]) -> (DVec3, DMat3) {
@@ -393,7 +393,7 @@ impl Patch {
     pub fn hand_on(&mut self) {
         let Self { skin, forces, couples, has_couples, starts, ends, following, .. } = self;
         let couples = has_couples.then_some(&couples[..]);
-        let all = HandedOn { skin, forces, couples, starts, ends, following };
+        let all = CarrierForces { skin, forces, couples, starts, ends, following };
         let (on_particles, couples_on_particles) = (&mut self.on_particles, &mut self.couples_on_particles);
         let rows = (&mut on_particles[..], &mut couples_on_particles[..]);
         for_each_block(rows, &mut Vec::new(), &|first, on| run_hot(OnParticles { all, first, on }));

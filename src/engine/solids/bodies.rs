@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glam::DMat3;
 
 use super::constitutive::{CRUSHED, Constitutive, MAX_TERMS, SolidBlock, SolidColumns, SolidRows, SolidSum};
-use super::damping::{self, DampedInShortSteps, DampedStrain, DampingStress};
+use super::damping::{self, DampedSubSteps, DampedStrain, DampingStress};
 use super::folded::{FoldedEnergy, FoldedRows, FoldedTerm, FoldedTermOfBodies};
 use super::hessian::{self, HessianDifference, HessianForm, HessianResidual, HessianStiffness};
 use super::pair_control::{self, PairControl};
@@ -120,7 +120,7 @@ impl SolidBodies {
         let hessian: Vec<ForBodies<HessianDifference>> =
             sim.take_for(&offering(ids, Offer::HessianDifferences, sim));
         let control: Vec<ForBodies<PairControl>> = sim.take_for(&offering(ids, Offer::PairControl, sim));
-        let damped: Vec<ForBodies<DampedInShortSteps>> = sim.take_for(&own);
+        let damped: Vec<ForBodies<DampedSubSteps>> = sim.take_for(&own);
         damped.iter().for_each(|ForBodies { bodies, .. }| {
             sim.add_column_to::<DampedStrain>(bodies);
             sim.add_column_to::<DampingStress>(bodies);

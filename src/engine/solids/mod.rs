@@ -40,7 +40,7 @@ mod support;
 pub use bodies::{BodyPass, SolidBodies, SolidBody, SolidPart};
 pub use constitutive::{Constitutive, SolidBlock, SolidColumns, SolidRows, SolidSum};
 pub use corrected_stress::{CorrectedStress, CorrectedStressRows};
-pub(crate) use damping::DampedInShortSteps;
+pub(crate) use damping::DampedSubSteps;
 pub(crate) use fields::fields;
 pub(crate) use fit::fit;
 pub use folded::{FoldedEnergy, FoldedMemory, FoldedRows, FoldedTerm, FoldedTermOfBodies};

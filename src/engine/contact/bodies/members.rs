@@ -7,7 +7,7 @@ use hecs::ArchetypeColumn;
 
 use super::shape::ParticleShape;
 use crate::plugin::{BodyPlan, Offer};
-use crate::removal::Leaving;
+use crate::removal::LeavingParticles;
 use crate::scene::Dimension;
 use crate::schedule::Resources;
 use crate::solids::{LocalMotion, SolidPhase};
@@ -77,7 +77,7 @@ pub(in crate::contact) struct MemberColumns<'a> {
     gradient: Option<ArchetypeColumn<'a, DeformationGradient>>,
     solid: Option<Ref<'a, dyn SolidPhase>>,
     body: Option<Ref<'a, dyn SolidPhase>>,
-    leaving: Option<Ref<'a, Leaving>>,
+    leaving: Option<Ref<'a, LeavingParticles>>,
 }
 
 impl<'a> MemberColumns<'a> {
@@ -132,7 +132,7 @@ pub(in crate::contact) struct Members<'a> {
     /// The body, where its particles deform with it.
     solid: Option<&'a dyn SolidPhase>,
     body: Option<&'a dyn SolidPhase>,
-    leaving: Option<&'a Leaving>,
+    leaving: Option<&'a LeavingParticles>,
 }
 
 impl Members<'_> {

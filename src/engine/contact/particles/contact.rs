@@ -1,9 +1,9 @@
 //! Contact between particles: discs or spheres of half a spacing, of two bodies or of one with itself.
 
 use super::pairs::{ContactPairs, PairPush};
-use super::search::{Crowd, Search};
+use super::search::{ContactParticles, Search};
 use crate::contact::active::{ActiveContacts, ContactEnd, ContactNodes, MinimumLength};
-use crate::contact::bodies::{MemberColumns, MemberParticles, MotionBounds, Nearness, failed};
+use crate::contact::bodies::{MemberColumns, MemberParticles, MotionBounds, Proximity, failed};
 use crate::contact::response::time_step::{self, Touches};
 use crate::contact::response::{ContactEnergy, History, Interaction, PairKey};
 use crate::neighbors::Periodic;
@@ -28,7 +28,7 @@ pub(in crate::contact) struct ParticleContact {
     mirror: Map,
     periodic: Periodic,
     search: Search,
-    pub contacts: ActiveContacts<Nearness, PairPush, MinimumLength>,
+    pub contacts: ActiveContacts<Proximity, PairPush, MinimumLength>,
     /// The particles of both sides that touch; of a body with itself all are on the first side.
     pub contact_nodes: [ContactNodes; 2],
 }
@@ -60,8 +60,8 @@ impl ParticleContact {
             (step.world.body_view(self.first.body), step.world.body_view(self.second.body));
         let (x, y) = (first.read_near::<Position>()?, second.read_near::<Position>()?);
         let own =
-            Crowd { position: &x[first_rows.clone()], radius: &self.first.radius, mirror: Map::IDENTITY };
-        let other = Crowd { position: &y[second_rows], radius: &self.second.radius, mirror: self.mirror };
+            ContactParticles { position: &x[first_rows.clone()], radius: &self.first.radius, mirror: Map::IDENTITY };
+        let other = ContactParticles { position: &y[second_rows], radius: &self.second.radius, mirror: self.mirror };
         let found = if self.first.body == self.second.body {
             let reference = first.read_near::<ReferencePosition>()?;
             let reference = &reference[first_rows];
@@ -159,7 +159,7 @@ impl ParticleContact {
     fn stiffest(&self) -> f64 {
         let [one, other] = &self.contact_nodes;
         let other = if self.first.body == self.second.body { one } else { other };
-        let stiffest = sum_over_blocks(self.contacts.met(), &|_, met: &[(PairKey, Nearness)]| {
+        let stiffest = sum_over_blocks(self.contacts.met(), &|_, met: &[(PairKey, Proximity)]| {
             Maximum::of(met.iter().map(|((i, j), _)| one.stiffness(*i) + other.stiffness(*j)))
         });
         stiffest.0

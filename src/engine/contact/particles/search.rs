@@ -19,7 +19,7 @@ const SKIN: f64 = 0.5;
 
 /// Places of the particles of a body.
 #[derive(Clone, Copy)]
-pub(super) struct Crowd<'a> {
+pub(super) struct ContactParticles<'a> {
     pub position: &'a [Position],
     /// Radius of every particle, m.
     pub radius: &'a [f64],
@@ -59,7 +59,7 @@ impl NearRegion {
         Self { filter: Filter::new(particles), numbers, position, reach: Vec::with_capacity(particles) }
     }
 
-    fn collect(&mut self, crowd: Crowd<'_>, stretch: f64, within: Option<&Aabb>) {
+    fn collect(&mut self, crowd: ContactParticles<'_>, stretch: f64, within: Option<&Aabb>) {
         let Self { filter, numbers, position, reach } = self;
         let place = |k: usize| crowd.mirror.place(crowd.position[k].0);
         filter.select(crowd.position.len(), numbers, &|k, ()| {
@@ -127,7 +127,7 @@ impl Search {
     }
 
     /// Finds the pairs of two bodies.
-    pub fn between(&mut self, first: Crowd<'_>, second: Crowd<'_>) -> Result<(), NeighborError> {
+    pub fn between(&mut self, first: ContactParticles<'_>, second: ContactParticles<'_>) -> Result<(), NeighborError> {
         self.pairs.clear();
         self.travelled = 0.0;
         let reach = self.stretch * (self.largest[0] + self.largest[1]);
@@ -159,8 +159,8 @@ impl Search {
     /// number first. A particle may touch its own image.
     pub fn of_itself(
         &mut self,
-        own: Crowd<'_>,
-        other: Crowd<'_>,
+        own: ContactParticles<'_>,
+        other: ContactParticles<'_>,
         apart: impl Fn(u32, u32) -> bool,
     ) -> Result<(), NeighborError> {
         let mirrored = other.mirror != Map::IDENTITY;
@@ -182,7 +182,7 @@ impl Search {
     }
 
     /// The box around particles; periodic axes have no end.
-    fn around(&self, crowd: Crowd<'_>) -> Aabb {
+    fn around(&self, crowd: ContactParticles<'_>) -> Aabb {
         let mirror = crowd.mirror;
         let bounds = sum_over_blocks(crowd.position, &|_, rows: &[Position]| {
             let places = rows.iter().map(|x| mirror.place(x.0));

@@ -5,12 +5,12 @@ use crate::plugin::{BodyPlan, Offer, SimBuilder};
 use crate::scene::{Contact, Problem};
 
 /// A pair of bodies of a scene, and the number of the contact that names it.
-pub(super) struct Named<'a> {
+pub(super) struct NamedPair<'a> {
     pub contact: &'a Contact,
     pub number: usize,
 }
 
-impl Named<'_> {
+impl NamedPair<'_> {
     /// A problem with the bodies that the contact is between.
     fn problem(&self, message: String, help: &str) -> Problem {
         Problem::at_path(format!("contacts[{}].between", self.number), message).help(help)

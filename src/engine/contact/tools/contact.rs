@@ -4,7 +4,7 @@
 use super::nearby::Nearby;
 use super::on_surface::{NearNodes, NodeTouch, OnSurface};
 use super::reaction::{NodePush, push};
-use super::together::Together;
+use super::together::CoupledResponse;
 use crate::contact::active::{ActiveContacts, ContactEnd, ContactNodes, NodeLoad};
 use crate::contact::bodies::{ContactSides, MemberParticles, MotionBounds};
 use crate::contact::response::time_step::{self, Touches};
@@ -30,7 +30,7 @@ pub(in crate::contact) struct SurfaceContact {
     /// Data of the nodes near the surface for the time step.
     near: NearNodes,
     /// Forces of its springs on the rigid bodies, where dashpots need them.
-    pub together: Option<Together>,
+    pub together: Option<CoupledResponse>,
 }
 
 /// Responses of the nodes in contact in a step.
@@ -79,7 +79,7 @@ impl SurfaceContact {
                 });
             (near, on.act_together(contacts.met()))
         })?;
-        if let Some(Together { on_node, on_tool }) = &self.together {
+        if let Some(CoupledResponse { on_node, on_tool }) = &self.together {
             let both = [(self.sides.first, on_node), (self.sides.second, on_tool)];
             for (id, springs) in both {
                 let body = bodies.iter_mut().find(|body| body.id == id);
@@ -104,7 +104,7 @@ impl SurfaceContact {
         &mut self,
         step: &Step<'_>,
         speed: f64,
-        beside: Option<Together>,
+        beside: Option<CoupledResponse>,
     ) -> Result<ToolResponses, StepError> {
         let (bodies, dt) = (step.resources.get::<RigidBodies>(), step.clock.dt);
         let Self { interaction, sides, contacts, gravity, near, together, .. } = self;
@@ -128,7 +128,7 @@ impl SurfaceContact {
         &mut self,
         step: &mut Step<'_>,
         motion: [MotionBounds; 2],
-        beside: Option<Together>,
+        beside: Option<CoupledResponse>,
     ) -> Result<ContactEnergy, StepError> {
         let speed = MotionBounds::approach(motion, &Map::IDENTITY);
         let ToolResponses { energies, expected, nodes, gap } = self.respond(step, speed, beside)?;

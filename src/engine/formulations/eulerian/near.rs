@@ -83,7 +83,7 @@ impl Split for NeighborRows<'_> {
 }
 
 /// Computes the pairs of the lists of a block.
-pub(super) struct LookAtBlock<'a, 'r> {
+pub(super) struct ComputePairs<'a, 'r> {
     pub kernel: Kernel,
     /// Support radius, m.
     pub support: f64,
@@ -95,24 +95,24 @@ pub(super) struct LookAtBlock<'a, 'r> {
     pub rows: &'r mut NeighborRows<'a>,
 }
 
-impl KernelVisitor for LookAtBlock<'_, '_> {
+impl KernelVisitor for ComputePairs<'_, '_> {
     type Output = ();
 
     fn visit<K: KernelProfile>(self, kernel: ProfiledKernel<K>) {
         let kernel = kernel.scaled(self.kernel.smoothing_length(self.support));
-        run_hot_in(self.plane, LookLoop { kernel, look: self });
+        run_hot_in(self.plane, PairLoop { kernel, look: self });
     }
 }
 
-struct LookLoop<'a, 'r, K: KernelProfile> {
+struct PairLoop<'a, 'r, K: KernelProfile> {
     kernel: ScaledKernel<K>,
-    look: LookAtBlock<'a, 'r>,
+    look: ComputePairs<'a, 'r>,
 }
 
-impl<K: KernelProfile> PlaneOrSpace for LookLoop<'_, '_, K> {
+impl<K: KernelProfile> PlaneOrSpace for PairLoop<'_, '_, K> {
     #[inline(always)]
     fn run<A: FourLanes, const D: usize>(self, a: A) {
-        let Self { kernel, look: LookAtBlock { support, lists, points, first, rows, .. } } = self;
+        let Self { kernel, look: ComputePairs { support, lists, points, first, rows, .. } } = self;
         let limit = support * support;
         let itself = kernel.w(0.0);
         let begin = rows.offsets[0];

@@ -9,7 +9,7 @@ use super::control_rows::Carried;
 use super::dilatation::Dilatation;
 use super::divergence::{Divergence, corrected};
 use super::force;
-use super::near::{LookAtBlock, NearbyMotion, NeighborRows};
+use super::near::{ComputePairs, NearbyMotion, NeighborRows};
 use super::particle::EulerianParticle;
 use super::rows::{EulerianKernel, EulerianRows, PointColumns};
 use crate::linalg::Sym3;
@@ -270,7 +270,7 @@ impl StressPass<'_> {
             *self;
         let (n, first) = (rows.deformation.len(), block.first);
         let OwnRows { mut near, deformation, carried, stresses } = own;
-        kernel.dispatch(LookAtBlock { kernel, support, lists, points, first, plane, rows: &mut near });
+        kernel.dispatch(ComputePairs { kernel, support, lists, points, first, plane, rows: &mut near });
         deformation.copy_from_slice(rows.deformation);
         for (k, f) in deformation.iter().enumerate() {
             block.gradient[k] = *f - DMat3::IDENTITY;

@@ -34,14 +34,14 @@ const CONTACT_DAMPING: &str = "contact_damping";
 /// Watches the accounts of what takes energy out of the motion.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct WrongSign {
-    accounts: Vec<Given>,
+    accounts: Vec<SuppliedEnergy>,
     /// Largest work that gravity or a load could do, seen so far, J.
     weight: f64,
 }
 
 /// Energy supplied by an account.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-struct Given {
+struct SuppliedEnergy {
     name: String,
     /// Consecutive checks in which it has supplied too much.
     looks: u32,
@@ -71,7 +71,7 @@ impl WrongSign {
             let scale = largest.max(SHARE_OF_WEIGHT / worth * self.weight);
             let share = if scale > 0.0 { -account.total() / scale } else { 0.0 };
             let k = self.accounts.iter().position(|given| given.name == account.name).unwrap_or_else(|| {
-                self.accounts.push(Given { name: account.name.clone(), ..Given::default() });
+                self.accounts.push(SuppliedEnergy { name: account.name.clone(), ..SuppliedEnergy::default() });
                 self.accounts.len() - 1
             });
             let given = &mut self.accounts[k];

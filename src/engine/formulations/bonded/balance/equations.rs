@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::alike::Kinds;
 use super::body::HeldBody;
-use super::lattice::{BondLattice, Share};
+use super::lattice::{BondLattice, BondShare};
 use super::lattices::Lattices;
 use super::least_squares::SparseRows;
 use super::zone::Zone;
@@ -130,6 +130,6 @@ impl Equations {
 /// b of a particle in a lattice.
 fn target(lattice: &BondLattice, start: &[f64], k: u32) -> DVec3 {
     let part =
-        |share: Share| start[k as usize] * share.own_part + start[share.other as usize] * share.other_part;
+        |share: BondShare| start[k as usize] * share.own_part + start[share.other as usize] * share.other_part;
     lattice.shares(k).map(part).sum()
 }

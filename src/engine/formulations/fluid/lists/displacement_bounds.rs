@@ -67,12 +67,12 @@ fn lane_max(Lanes4(a): Lanes4, Lanes4(b): Lanes4) -> Lanes4 {
 
 /// A spread that grows by one displacement after the other.
 #[derive(Clone, Copy)]
-pub struct Growing {
+pub struct BoundsBuilder {
     spread: DisplacementBounds,
     sum: Lanes4,
 }
 
-impl Growing {
+impl BoundsBuilder {
     #[inline(always)]
     pub fn new() -> Self {
         Self { spread: DisplacementBounds::NONE, sum: Lanes4::ZERO }

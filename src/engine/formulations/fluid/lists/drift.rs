@@ -11,7 +11,7 @@ use std::ops::Range;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::displacement_bounds::{DisplacementBounds, Growing};
+use super::displacement_bounds::{DisplacementBounds, BoundsBuilder};
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::neighbors::{Buckets, CellBlock, Periodic, SHIFT, sort_into_cells};
 use crate::parallel::{FourLanes, HotLoop, Lanes4, run_hot, sum_over_blocks};
@@ -174,7 +174,7 @@ impl HotLoop for Moved<'_> {
     fn run<A: FourLanes>(self, a: A) -> DisplacementBounds {
         let [period, inverse] = *self.periods;
         let shift = Lanes4::splat(SHIFT);
-        let mut moved = Growing::new();
+        let mut moved = BoundsBuilder::new();
         for (&row, then) in self.rows.iter().zip(self.then) {
             let x = a.sub(self.records[row as usize].place, *then);
             // To the nearest periodic image.

@@ -27,12 +27,12 @@ const USUAL: f64 = 0.003;
 /// Watches the compression of every body.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CompressionWatch {
-    bodies: Vec<Told>,
+    bodies: Vec<ReportedDeviation>,
 }
 
 /// Deviation reported for a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-struct Told {
+struct ReportedDeviation {
     /// Frames in sequence with a large deviation.
     frames: u32,
     /// The largest deviation reported to the user.
@@ -52,7 +52,7 @@ impl BlockSum for CompressionSums {
 impl CompressionWatch {
     /// Checks all fluids.
     pub fn look(&mut self, cloud: &FlowCloud, step: &mut Step<'_>) {
-        self.bodies.resize(cloud.groups.len(), Told::default());
+        self.bodies.resize(cloud.groups.len(), ReportedDeviation::default());
         for (group, told) in cloud.groups.iter().zip(&mut self.bodies) {
             let Some(state) = group.fluid() else { break };
             let deviation = deviation(&cloud.records[group.cloud.clone()], state.bulk_modulus());

@@ -144,10 +144,10 @@ impl BlockLists {
         counts.resize(blocks, [0; EIGHT]);
         let rows = (&mut counts[..], fluid.writer());
         for_each_block(rows, &mut Vec::new(), &|first, (counts, near): (&mut [_], NearWriter<'_>)| {
-            let sift = Sift { table, candidates, places, sides, unit, limit, first, counts, near };
+            let sift = NeighborFilter { table, candidates, places, sides, unit, limit, first, counts, near };
             match sides {
-                Some(_) => run_blocks_on(plane, Sifted::<true>(sift)),
-                None => run_blocks_on(plane, Sifted::<false>(sift)),
+                Some(_) => run_blocks_on(plane, FilterLoop::<true>(sift)),
+                None => run_blocks_on(plane, FilterLoop::<false>(sift)),
             }
         });
         Ok(())
@@ -161,7 +161,7 @@ fn who_sees(sides: &Sides<'_>, walls: &NeighborList, rows: &Rows, j: u32, near: 
 }
 
 /// Takes out of the candidates those that are near.
-struct Sift<'a> {
+struct NeighborFilter<'a> {
     table: &'a BlockTable,
     candidates: &'a NeighborList,
     places: &'a [Packed],
@@ -174,14 +174,14 @@ struct Sift<'a> {
 }
 
 /// `HIDDEN`: where some particles do not see all near ones.
-struct Sifted<'a, const HIDDEN: bool>(Sift<'a>);
+struct FilterLoop<'a, const HIDDEN: bool>(NeighborFilter<'a>);
 
-impl<const HIDDEN: bool> BlockLoop for Sifted<'_, HIDDEN> {
+impl<const HIDDEN: bool> BlockLoop for FilterLoop<'_, HIDDEN> {
     type Output = ();
 
     #[inline(always)]
     fn run<A: EightLanes>(self, a: A) {
-        let Sift { table, candidates, places, sides, unit, limit, first, counts, mut near } = self.0;
+        let NeighborFilter { table, candidates, places, sides, unit, limit, first, counts, mut near } = self.0;
         let unit = [a.splat(unit[0]), a.splat(unit[1]), a.splat(unit[2])];
         let limit = a.splat(limit);
         for (k, counts) in counts.iter_mut().enumerate() {

@@ -5,7 +5,7 @@ use std::cell::RefCell;
 
 use super::super::pair_force::ForceRows;
 use super::super::pair_sums::Between;
-use super::land::{Landing, land};
+use super::land::{BlockOutput, land};
 use super::pairs::{BlockForces, Chunk, PairsOfBlock};
 use crate::formulations::fluid::cloud::{FlowCloud, Group, take_until};
 use crate::formulations::fluid::lanes::{KernelLoop, PairShape};
@@ -152,7 +152,7 @@ impl<K: PairShape> BlockLoop for ForceBlocks<'_, K> {
                 }
             }
             let of_terms = &of_terms[..count];
-            land(&sums, of_terms, Landing { particles, first, plane: cloud.plane, adds: *adds }, &mut rows);
+            land(&sums, of_terms, BlockOutput { particles, first, plane: cloud.plane, adds: *adds }, &mut rows);
             if count > 0 {
                 fastest.add_block(of_terms);
             }

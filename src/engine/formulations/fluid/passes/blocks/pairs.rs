@@ -56,7 +56,7 @@ pub struct Chunk<'c> {
 }
 
 /// A neighbour of the particles of a block with which they have friction.
-struct RubbingPair<'x> {
+struct FrictionPair<'x> {
     /// Its row in the cloud.
     row: u32,
     /// Share of the spin of the particle in that of the pair; the rest is that of the neighbour.
@@ -173,7 +173,7 @@ impl<'a, K: PairShape> PairsOfBlock<'a, K> {
                     wall[axis] = a.mul_add(of_wall, x[axis], wall[axis]);
                 }
             }
-            let rubbing = RubbingPair { row: row[n], share, x: &x, v: &v, weight };
+            let rubbing = FrictionPair { row: row[n], share, x: &x, v: &v, weight };
             self.rub::<A, FRICTION>(a, rubbing, &mut viscous);
         }
         *sums = BlockForces { pressure, viscous, wall };
@@ -189,11 +189,11 @@ impl<'a, K: PairShape> PairsOfBlock<'a, K> {
 
     /// Adds the friction with a neighbour: `mu w (v_ij - omega_ij x x_ij)`.
     #[inline(always)]
-    fn rub<A: EightLanes, const FRICTION: u8>(&self, a: A, pair: RubbingPair<'_>, viscous: &mut [Lanes8; 3]) {
+    fn rub<A: EightLanes, const FRICTION: u8>(&self, a: A, pair: FrictionPair<'_>, viscous: &mut [Lanes8; 3]) {
         if FRICTION == NONE {
             return;
         }
-        let RubbingPair { row, share, x, v, weight } = pair;
+        let FrictionPair { row, share, x, v, weight } = pair;
         let friction = a.scale(self.viscosity, weight);
         let mut relative = *v;
         if FRICTION == WITH_SPIN {
