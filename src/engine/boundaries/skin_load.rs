@@ -275,7 +275,7 @@ impl SkinLoad {
         }
         let account = step.ledger.account(self.label, AccountKind::Supplied);
         step.ledger.add(account, skin.body, self.patch.work(&mut self.last, step.clock.dt));
-        self.patch.hand_on();
+        self.patch.transfer_forces();
         let body = step.world.body(skin.body);
         if let Some(mut solid) = step.resources.solid_mut(body.phase) {
             self.patch.add_couples(&mut *solid, body.rows.start);

@@ -390,7 +390,7 @@ impl Patch {
     }
 
     /// Adds the forces on the vertices to the particles.
-    pub fn hand_on(&mut self) {
+    pub fn transfer_forces(&mut self) {
         let Self { skin, forces, couples, has_couples, starts, ends, following, .. } = self;
         let couples = has_couples.then_some(&couples[..]);
         let all = CarrierForces { skin, forces, couples, starts, ends, following };

@@ -83,7 +83,7 @@ impl ParticleContact {
         step: &mut Step<'_>,
         motion: [MotionBounds; 2],
     ) -> Result<ContactEnergy, StepError> {
-        let (speed, stretch) = self.search_anew(step, motion)?;
+        let (speed, stretch) = self.update_candidates(step, motion)?;
         let (energies, least) = self.evaluate(step, stretch)?;
         let bodies = [self.first.body, self.second.body];
         let touches = Touches { squared: self.stiffest(), stored: energies.stored, speed, reach: least };
@@ -93,7 +93,7 @@ impl ParticleContact {
 
     /// Energy of the springs of all active pairs, J.
     pub fn pressed(&mut self, step: &Step<'_>, motion: [MotionBounds; 2]) -> Result<f64, StepError> {
-        let (_, stretch) = self.search_anew(step, motion)?;
+        let (_, stretch) = self.update_candidates(step, motion)?;
         Ok(self.evaluate(step, stretch)?.0.stored)
     }
 
@@ -104,7 +104,7 @@ impl ParticleContact {
 
     /// Searches for pairs that may touch where they may be others; returns the speed of approach, m/s, and a
     /// bound of all stretches.
-    fn search_anew(&mut self, step: &Step<'_>, motion: [MotionBounds; 2]) -> Result<(f64, f64), StepError> {
+    fn update_candidates(&mut self, step: &Step<'_>, motion: [MotionBounds; 2]) -> Result<(f64, f64), StepError> {
         let speed = MotionBounds::approach(motion, &self.mirror);
         let stretch = motion[0].stretch.max(motion[1].stretch);
         if self.search.moved(speed * step.clock.dt, stretch) {

@@ -131,11 +131,11 @@ impl SkinOnTool {
         self.patch.update(&view, dt, wanted);
         let Extremes { gap, stiffest } = self.press(tool, dt);
         let mut energies =
-            if self.interaction.is_elastic() { ContactEnergy::default() } else { self.rub(tool, dt) };
+            if self.interaction.is_elastic() { ContactEnergy::default() } else { self.add_friction(tool, dt) };
         let ToolSums { on_tool, of_tool, stored, power } = self.push(tool);
         energies.stored += stored;
         energies.ahead += 0.5 * dt * power;
-        self.patch.hand_on();
+        self.patch.transfer_forces();
         let (touch, usual) = touch_of(&skin, tool);
         let (law, speed) = (&*self.interaction.law, speeds[0] + speeds[1]);
         let (stiffest, gap) = (stiffest.0, gap.0);
@@ -237,7 +237,7 @@ impl SkinOnTool {
     }
 
     /// Computes dashpot and friction at the vertices that are pressed.
-    fn rub(&mut self, tool: &RigidBody, dt: f64) -> ContactEnergy {
+    fn add_friction(&mut self, tool: &RigidBody, dt: f64) -> ContactEnergy {
         let (usual, _) = touch_of(&self.patch.skin, tool);
         let Self { interaction, patch, sides, pressed, touching, contacts, .. } = self;
         let (patch, pressed) = (&*patch, &*pressed);

@@ -123,7 +123,7 @@ impl SkinPair {
             gap.add(&of_points);
             stiffest.add(&self.push(side));
         }
-        self.patches.iter_mut().for_each(Patch::hand_on);
+        self.patches.iter_mut().for_each(Patch::transfer_forces);
         let length = self.length();
         let touch = Touch { overlap: 0.0, radius: 0.5 * length, length, depth: length };
         let usual = length.powi(self.patches[0].skin.facets.axes as i32 - 1);

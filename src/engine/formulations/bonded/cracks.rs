@@ -86,7 +86,7 @@ pub(in crate::formulations) struct Cracks {
 impl Cracks {
     /// Adds the particles that have failed since the last step. `known` holds the rows that had failed
     /// before, ascending; the others are added to it.
-    pub fn take_up(
+    pub fn update(
         &mut self,
         known: &mut Vec<u32>,
         damage: &[Damage],

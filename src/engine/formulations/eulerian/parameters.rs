@@ -24,7 +24,7 @@ use crate::plugin::{BodyKind, BodyPlan, Formulation, Offer, Setup, SetupError, S
 use crate::removal::LeavingParticles;
 use crate::scene::Dimension;
 use crate::schedule::{Mode, Stage, System};
-use crate::solids::{CORRECTED_STRESS, PACKED_SOLID, SolidBodies, TakenUp, require_support};
+use crate::solids::{CORRECTED_STRESS, PACKED_SOLID, SolidBodies, AppliedLosses, require_support};
 use crate::symmetry::repeats_of;
 use crate::world::{
     BodyId, BodySet, Column, ColumnSet, DeformationGradient, Force, Mass, PhaseId, PiolaStress, Position,
@@ -88,7 +88,7 @@ impl Formulation for Eulerian {
     }
 
     fn columns(columns: &mut ColumnSet) {
-        columns.add::<SupportRadius>().add::<DeformationGradient>().add::<PiolaStress>().add::<TakenUp>();
+        columns.add::<SupportRadius>().add::<DeformationGradient>().add::<PiolaStress>().add::<AppliedLosses>();
     }
 
     fn assemble(bodies: Vec<(BodyId, Self)>, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {

@@ -9,7 +9,7 @@ use crate::notation::quantity;
 use crate::parallel::{BlockSum, sum_over_blocks};
 use crate::plugin::{BodyKind, BodyPlan, SimBuilder};
 use crate::removal::REMOVED_ENERGY;
-use crate::schedule::{Account, AccountKind, INTO_HEAT, Step, warn_anew};
+use crate::schedule::{Account, AccountKind, INTO_HEAT, Step, replace_warning};
 
 /// Energy given, over the largest one that any account has held, that is worth a warning.
 const SHARE: f64 = 0.01;
@@ -88,7 +88,7 @@ impl WrongSign {
                 quantity(step.clock.end(), "s"),
                 advice(account, remedies, step)
             );
-            warn_anew(step.warnings, &begin, text);
+            replace_warning(step.warnings, &begin, text);
         }
     }
 }

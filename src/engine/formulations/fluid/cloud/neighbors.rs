@@ -48,7 +48,7 @@ impl FlowCloud {
     }
 
     /// Whether loops are no longer divided as they were when the lists were built.
-    fn is_divided_anew(&self) -> bool {
+    fn is_repartitioned(&self) -> bool {
         self.pairs.builds > 0 && self.blocks.as_ref().is_some_and(|blocks| !blocks.lists.others.is_current())
     }
 
@@ -87,7 +87,7 @@ impl Run for Neighbors {
             message: error.to_string(),
         };
         let is_restored = std::mem::take(&mut self.is_restored);
-        if is_restored || cloud.is_divided_anew() || is_known_otherwise && cloud.pairs.builds > 0 {
+        if is_restored || cloud.is_repartitioned() || is_known_otherwise && cloud.pairs.builds > 0 {
             cloud.read_list_positions(step.world, &mut self.built)?;
             cloud.build_lists(&self.built).map_err(failed)?;
             if !is_restored {

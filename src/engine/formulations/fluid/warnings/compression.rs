@@ -12,7 +12,7 @@ use crate::formulations::fluid::cloud::{FlowCloud, FluidState, Group};
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::notation::quantity;
 use crate::parallel::{BlockSum, sum_over_blocks};
-use crate::schedule::{Step, warn_anew};
+use crate::schedule::{Step, replace_warning};
 
 /// Standard deviation of the compression that is worth a warning: pressures that differ by a thirtieth to a
 /// tenth of rho_0 c_0^2.
@@ -62,7 +62,7 @@ impl CompressionWatch {
             }
             told.deviation = deviation;
             let (begin, text) = text(group, state, deviation, step);
-            warn_anew(step.warnings, &begin, text);
+            replace_warning(step.warnings, &begin, text);
         }
     }
 }

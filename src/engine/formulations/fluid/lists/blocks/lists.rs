@@ -155,7 +155,7 @@ impl BlockLists {
 }
 
 /// The bits of those particles of a block, among the ones whose bits are set, that see a fluid particle.
-fn who_sees(sides: &Sides<'_>, walls: &NeighborList, rows: &Rows, j: u32, near: usize) -> usize {
+fn visible_to(sides: &Sides<'_>, walls: &NeighborList, rows: &Rows, j: u32, near: usize) -> usize {
     let sees = |lane: &usize| near >> lane & 1 == 1 && sides.sees(rows[*lane] as usize, j as usize, walls);
     (0..EIGHT).filter(sees).fold(0, |bits, lane| bits | 1 << lane)
 }
@@ -194,7 +194,7 @@ impl<const HIDDEN: bool> BlockLoop for FilterLoop<'_, HIDDEN> {
                 let square = dot(a, &x, &x);
                 let bits = a.below(square, limit);
                 let bits = match sides {
-                    Some((sides, walls)) if HIDDEN => who_sees(sides, walls, rows, j, bits),
+                    Some((sides, walls)) if HIDDEN => visible_to(sides, walls, rows, j, bits),
                     _ => bits,
                 };
                 row.push_if::<HIDDEN>(j, bits);
