@@ -179,15 +179,15 @@ impl Rigid {
         self.check(plan, mass, &constraint, sim.dimension())?;
         let factor = mass / of_shape.mass;
         let nodes = Nodes::new(shape, &*surface, &plan.sites, plan.spacing, sim.dimension());
-        let reach_of = |node: &RigidNode| node.point.distance(of_shape.center) + node.radius();
-        let reach = nodes.list().iter().map(reach_of).fold(0.0, f64::max);
+        let distance_of = |node: &RigidNode| node.point.distance(of_shape.center) + node.radius();
+        let bounding_radius = nodes.list().iter().map(distance_of).fold(0.0, f64::max);
         let points = of_shape.points * factor;
         let parts = RigidParts {
             id,
             mass,
             inertia: Inertia::new(&(of_shape.tensor * factor)),
             points: (points.determinant() > 0.0).then(|| points.inverse()),
-            reach,
+            bounding_radius,
             surface,
             nodes,
             constraint,

@@ -50,7 +50,7 @@ impl MotionBounds {
             && let Some(rigid) = bodies.iter().find(|rigid| rigid.id == body)
         {
             // The points that touch are farther out than the particles.
-            let spread = rigid.state.angular_velocity.length() * rigid.reach;
+            let spread = rigid.state.angular_velocity.length() * rigid.bounding_radius;
             return Ok(Self { velocity: rigid.state.velocity, spread, ..Self::NONE });
         }
         let (view, rows) = step.world.body_view(body);

@@ -123,7 +123,7 @@ impl ContactSides {
             return 0.0;
         }
         let distance = self.near(body.state.center, tool).distance(tool.state.center);
-        (distance - body.reach - tool.reach).max(0.0)
+        (distance - body.bounding_radius - tool.bounding_radius).max(0.0)
     }
 
     /// Place of the first node that is deeper inside the other body than one may start, m.

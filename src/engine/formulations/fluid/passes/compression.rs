@@ -84,7 +84,7 @@ impl CompressionRows<'_> {
         let FlowCloud { records, pairs: lists, kernel, .. } = self.cloud;
         let kernel = *kernel;
         let mut batch = Batch::EMPTY;
-        let reach = Lanes4::splat(self.cloud.reach * self.cloud.reach);
+        let range = Lanes4::splat(self.cloud.repulsion_range * self.cloud.repulsion_range);
         for (k, out) in self.out.iter_mut().enumerate() {
             let i = self.first + k;
             let own = OwnRecord::<D>::new(&records[i]);
@@ -94,7 +94,7 @@ impl CompressionRows<'_> {
             let sum = pairs.add::<A, P>(a, lists.fluid.row(i), &mut near, Lanes4::ZERO, None);
             let sum = pairs.add::<A, P>(a, lists.walls.row(i), &mut near, sum, Some(&mut least));
             near.close();
-            self.is_close[k] = (a.below(least, reach) != 0).into();
+            self.is_close[k] = (a.below(least, range) != 0).into();
             *out = a.scale(kernel.weight_scale(), sum).sum();
         }
     }

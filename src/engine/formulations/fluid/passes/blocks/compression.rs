@@ -26,7 +26,7 @@ impl FlowCloud {
             lists,
             unit: units.length.to_array(),
             back: -0.5 * dt,
-            reach: self.reach * self.reach,
+            range: self.repulsion_range * self.repulsion_range,
             limit: self.kernel.support * self.kernel.support,
             least: self.kernel.min_square(),
             scale: self.kernel.weight_scale(),
@@ -73,9 +73,9 @@ struct Compress<'a> {
     unit: [f64; 3],
     /// Time from the end of the step to its middle, s.
     back: f64,
-    /// Squares of the reach of boundaries, of the support radius, and of the distance of particles in one
+    /// Squares of the range of repulsion, of the support radius, and of the distance of particles in one
     /// place, m2.
-    reach: f64,
+    range: f64,
     limit: f64,
     least: f64,
     /// Weight at r = 0.
@@ -130,7 +130,7 @@ impl<K: PairShape, const HIDDEN: bool> BlockLoop for CompressionBlocks<'_, K, HI
     #[inline(always)]
     fn run<A: EightLanes>(self, a: A) {
         let Self { pass, kernel, first, rows: (rates, is_close, near) } = self;
-        let Compress { packed, lists, unit, back, reach, limit, least: smallest, scale, .. } = pass;
+        let Compress { packed, lists, unit, back, range, limit, least: smallest, scale, .. } = pass;
         let mut writer = near.blocks;
         let unit = [a.splat(unit[0]), a.splat(unit[1]), a.splat(unit[2])];
         let (back, limit, smallest) = (a.splat(back), a.splat(limit), a.splat(smallest));
@@ -158,7 +158,7 @@ impl<K: PairShape, const HIDDEN: bool> BlockLoop for CompressionBlocks<'_, K, HI
                 }
             }
             near.close();
-            let close = a.below(least, a.splat(reach));
+            let close = a.below(least, a.splat(range));
             for lane in 0..EIGHT {
                 let row = rows[lane] as usize - first;
                 rates[row] = scale * f64::from(sums.sum.0[lane]);
