@@ -117,11 +117,18 @@ mod tests {
             let f = DMat3::from_diagonal(DVec3::new(x, y, z));
             then.is_torn(f.determinant(), &cofactor(&f))
         };
-        assert!(!torn(AfterFailure::NoDeviator, 1.0, 1.0, 1.9) && torn(AfterFailure::NoDeviator, 1.0, 1.0, 2.1));
-        assert!(torn(AfterFailure::NoDeviator, 1.0, 1.0, -1.0) && !torn(AfterFailure::NoDeviator, 0.5, 0.5, 0.5));
+        assert!(
+            !torn(AfterFailure::NoDeviator, 1.0, 1.0, 1.9) && torn(AfterFailure::NoDeviator, 1.0, 1.0, 2.1)
+        );
+        assert!(
+            torn(AfterFailure::NoDeviator, 1.0, 1.0, -1.0) && !torn(AfterFailure::NoDeviator, 0.5, 0.5, 0.5)
+        );
         // Areas of 4, 4 and 1/16 times have a root of the mean square of 3.3, those of 2, 2 and 1/4 one of
         // 1.6.
-        assert!(torn(AfterFailure::NoDeviator, 0.25, 0.25, 16.0) && !torn(AfterFailure::NoDeviator, 0.5, 0.5, 4.0));
+        assert!(
+            torn(AfterFailure::NoDeviator, 0.25, 0.25, 16.0)
+                && !torn(AfterFailure::NoDeviator, 0.5, 0.5, 4.0)
+        );
     }
 
     #[test]

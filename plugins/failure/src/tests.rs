@@ -237,8 +237,12 @@ fn all_work_is_stored_or_set_free() {
 
 #[test]
 fn a_law_that_does_not_fail_is_left_as_it_is() {
-    let mut specimen =
-        Specimen::new(rubber(), Criterion::MaximumPrincipalStrain { limit: 9.0 }, 1.0, AfterFailure::NoTension);
+    let mut specimen = Specimen::new(
+        rubber(),
+        Criterion::MaximumPrincipalStrain { limit: 9.0 },
+        1.0,
+        AfterFailure::NoTension,
+    );
     let bare = inner(rubber());
     for k in 1..50 {
         let f = path(f64::from(k) / 50.0);

@@ -9,11 +9,17 @@ use meshless_engine::world::{BodyId, BodySet, Column, DeformationGradient, Remov
 use crate::IsDebris;
 
 /// Adds what marks and removes the debris of some bodies.
-pub(crate) fn add(sim: &mut SimBuilder<'_>, bodies: Vec<BodyId>, minimum_volume_ratio: f64, particles: usize) {
+pub(crate) fn add(
+    sim: &mut SimBuilder<'_>,
+    bodies: Vec<BodyId>,
+    minimum_volume_ratio: f64,
+    particles: usize,
+) {
     let set = BodySet::new(bodies.iter().copied());
     sim.add_column_to::<IsDebris>(&set);
     sim.add_removal_rule(Debris { bodies: bodies.clone() });
-    let marking = Marking { bodies, minimum_volume_ratio, pieces: Fragments { particles, found: Vec::new() } };
+    let marking =
+        Marking { bodies, minimum_volume_ratio, pieces: Fragments { particles, found: Vec::new() } };
     sim.add_system(
         System::new(Stage::PostStep, "debris", marking)
             .on_bodies(set)
@@ -42,7 +48,8 @@ impl Run for Marking {
             let mut debris = view.write::<IsDebris>()?;
             for row in rows {
                 let is_debris = removed[row] == Removed::NO
-                    && (deformation[row].0.determinant() < *minimum_volume_ratio || pieces.is_small(&*solid, row));
+                    && (deformation[row].0.determinant() < *minimum_volume_ratio
+                        || pieces.is_small(&*solid, row));
                 debris[row] = IsDebris(u32::from(is_debris));
             }
         }

@@ -1,7 +1,7 @@
 //! Checks of the probes of a scene before anything is built.
 
 use super::requirements::{in_plane, positive_time, twice, unknown_body, usable_name};
-use super::{Probe, Problem, Quantity, Scene, Reduction};
+use super::{Probe, Problem, Quantity, Reduction, Scene};
 
 /// Maximum number of points on a line.
 const MAX_POINTS: u32 = 1000;

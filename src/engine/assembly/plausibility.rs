@@ -66,8 +66,7 @@ fn of_body(body: &BodyPlan) -> Vec<String> {
     }
     if let Law::Solid(law) = &body.material.law {
         let elastic = law.elastic();
-        if let Some(stress) =
-            law.initial_yield_stress().filter(|stress| *stress > MAX_YIELD * elastic.young)
+        if let Some(stress) = law.initial_yield_stress().filter(|stress| *stress > MAX_YIELD * elastic.young)
         {
             found.push(format!(
                 "material `{material}` yields at {}, {} times its Young's modulus of {}: check their units",

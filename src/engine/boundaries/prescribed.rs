@@ -48,8 +48,7 @@ pub(super) fn prescribe(
     let time_increment = 1e-6 * sim.scene().time.end;
     for body in rigid {
         require_one_motion(name, &field, body, sim)?;
-        let motion =
-            PrescribedMotion { name, kind, field: field.clone(), parts: Vec::new(), time_increment };
+        let motion = PrescribedMotion { name, kind, field: field.clone(), parts: Vec::new(), time_increment };
         let stated = prescription(&motion);
         sim.extend(DrivenBody { body, motion: stated, axes: field.axes(), drive: Box::new(motion) });
     }

@@ -80,7 +80,8 @@ impl Constraint {
 
     /// Whether the whole motion is prescribed.
     pub fn is_complete(&self) -> bool {
-        self.free_axes() == DVec3::ZERO && matches!(self.turning, RotationConstraint::Held | RotationConstraint::Driven(_))
+        self.free_axes() == DVec3::ZERO
+            && matches!(self.turning, RotationConstraint::Held | RotationConstraint::Driven(_))
     }
 
     /// Whether it does not turn at all.

@@ -106,8 +106,8 @@ impl Constraint {
     /// Checks that a prescribed motion keeps a body where a symmetry plane cuts it.
     fn holds(&self, halved: &HalvedBody, sim: &SimBuilder<'_>) -> Result<(), SetupError> {
         let HalvedBody { body, axis } = *halved;
-        let is_held =
-            self.drives.iter().any(|drive| drive.axes[axis]) && !matches!(self.turning, RotationConstraint::Free);
+        let is_held = self.drives.iter().any(|drive| drive.axes[axis])
+            && !matches!(self.turning, RotationConstraint::Free);
         if is_held {
             return Ok(());
         }

@@ -91,7 +91,9 @@ impl RigidBody {
                 state.angular_velocity = inertia.angular_velocity(state.rotation, state.angular_momentum);
                 return;
             }
-            RotationConstraint::About(axis) => state.angular_velocity = *axis * axis.dot(state.angular_velocity),
+            RotationConstraint::About(axis) => {
+                state.angular_velocity = *axis * axis.dot(state.angular_velocity)
+            }
             RotationConstraint::Held => state.angular_velocity = DVec3::ZERO,
             RotationConstraint::Driven(_) => {}
         }

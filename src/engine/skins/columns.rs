@@ -146,10 +146,11 @@ impl SkinView<'_> {
 
     /// The same where the shares follow the deformation: those without a share need not be there.
     fn look_at_following(&self, vertex: u32) -> (DVec3, bool) {
-        let VertexPosition(place, missing) = self.mean(vertex, VertexPosition::default(), |share, carrier, row| {
-            let missing = share > 0.0 && self.removed[row] != Removed::NO;
-            VertexPosition(share * self.carried(carrier, row), u32::from(missing))
-        });
+        let VertexPosition(place, missing) =
+            self.mean(vertex, VertexPosition::default(), |share, carrier, row| {
+                let missing = share > 0.0 && self.removed[row] != Removed::NO;
+                VertexPosition(share * self.carried(carrier, row), u32::from(missing))
+            });
         (place, missing == 0)
     }
 

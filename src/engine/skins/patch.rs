@@ -92,9 +92,21 @@ impl CarrierForces<'_> {
             let (x, y, z) = (end.weight * f.x, end.weight * f.y, end.weight * f.z);
             (fx, fy, fz) = (fx + x, fy + y, fz + z);
             let arm = &end.arm;
-            (xx, yx, zx) = (a.scalar_mul_add(x, arm.x, xx), a.scalar_mul_add(y, arm.x, yx), a.scalar_mul_add(z, arm.x, zx));
-            (xy, yy, zy) = (a.scalar_mul_add(x, arm.y, xy), a.scalar_mul_add(y, arm.y, yy), a.scalar_mul_add(z, arm.y, zy));
-            (xz, yz, zz) = (a.scalar_mul_add(x, arm.z, xz), a.scalar_mul_add(y, arm.z, yz), a.scalar_mul_add(z, arm.z, zz));
+            (xx, yx, zx) = (
+                a.scalar_mul_add(x, arm.x, xx),
+                a.scalar_mul_add(y, arm.x, yx),
+                a.scalar_mul_add(z, arm.x, zx),
+            );
+            (xy, yy, zy) = (
+                a.scalar_mul_add(x, arm.y, xy),
+                a.scalar_mul_add(y, arm.y, yy),
+                a.scalar_mul_add(z, arm.y, zy),
+            );
+            (xz, yz, zz) = (
+                a.scalar_mul_add(x, arm.z, xz),
+                a.scalar_mul_add(y, arm.z, yz),
+                a.scalar_mul_add(z, arm.z, zz),
+            );
         }
         let columns = [DVec3::new(xx, yx, zx), DVec3::new(xy, yy, zy), DVec3::new(xz, yz, zz)];
         let mut couple = DMat3 { x_axis: columns[0], y_axis: columns[1], z_axis: columns[2] };

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glam::DMat3;
 
 use super::constitutive::{CRUSHED, Constitutive, MAX_TERMS, SolidBlock, SolidColumns, SolidRows, SolidSum};
-use super::damping::{self, DampedSubSteps, DampedStrain, DampingStress};
+use super::damping::{self, DampedStrain, DampedSubSteps, DampingStress};
 use super::folded::{FoldedEnergy, FoldedRows, FoldedTerm, FoldedTermOfBodies};
 use super::hessian::{self, HessianDifference, HessianForm, HessianResidual, HessianStiffness};
 use super::pair_control::{self, PairControl};

@@ -46,7 +46,7 @@ pub(crate) use fit::fit;
 pub use folded::{FoldedEnergy, FoldedMemory, FoldedRows, FoldedTerm, FoldedTermOfBodies};
 pub use hessian::{HessianDifference, HessianForm, HessianResidual, HessianStiffness};
 pub use local_motion::{HasPlace, LocalFit, LocalMotion, RateSum};
-pub use losses::{Loss, AppliedLosses};
+pub use losses::{AppliedLosses, Loss};
 pub use pair_control::PairControl;
 pub use pairs::SolidPairs;
 pub use phase::{CORRECTED_STRESS, PACKED_SOLID, SolidPhase};

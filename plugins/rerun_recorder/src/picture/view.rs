@@ -2,7 +2,7 @@
 
 use meshless_engine::scene::Dimension;
 
-use crate::camera::{Viewpoint, OPENING, across, dot, unit};
+use crate::camera::{OPENING, Viewpoint, across, dot, unit};
 use crate::reading::RecordedFrame;
 
 /// A ball in the picture.

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::members::Members;
-use super::shape::{Proximity, ParticleShape, on_surface};
+use super::shape::{ParticleShape, Proximity, on_surface};
 use crate::rigid::{RigidBody, Round};
 use crate::shapes::SurfacePoint;
 use crate::solids::LocalMotion;

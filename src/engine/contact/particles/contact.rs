@@ -59,9 +59,13 @@ impl ParticleContact {
         let ((first, first_rows), (second, second_rows)) =
             (step.world.body_view(self.first.body), step.world.body_view(self.second.body));
         let (x, y) = (first.read_near::<Position>()?, second.read_near::<Position>()?);
-        let own =
-            ContactParticles { position: &x[first_rows.clone()], radius: &self.first.radius, mirror: Map::IDENTITY };
-        let other = ContactParticles { position: &y[second_rows], radius: &self.second.radius, mirror: self.mirror };
+        let own = ContactParticles {
+            position: &x[first_rows.clone()],
+            radius: &self.first.radius,
+            mirror: Map::IDENTITY,
+        };
+        let other =
+            ContactParticles { position: &y[second_rows], radius: &self.second.radius, mirror: self.mirror };
         let found = if self.first.body == self.second.body {
             let reference = first.read_near::<ReferencePosition>()?;
             let reference = &reference[first_rows];
@@ -104,7 +108,11 @@ impl ParticleContact {
 
     /// Searches for pairs that may touch where they may be others; returns the speed of approach, m/s, and a
     /// bound of all stretches.
-    fn update_candidates(&mut self, step: &Step<'_>, motion: [MotionBounds; 2]) -> Result<(f64, f64), StepError> {
+    fn update_candidates(
+        &mut self,
+        step: &Step<'_>,
+        motion: [MotionBounds; 2],
+    ) -> Result<(f64, f64), StepError> {
         let speed = MotionBounds::approach(motion, &self.mirror);
         let stretch = motion[0].stretch.max(motion[1].stretch);
         if self.search.moved(speed * step.clock.dt, stretch) {
@@ -138,8 +146,8 @@ impl ParticleContact {
             dt: step.clock.dt,
         };
         let Self { contacts, contact_nodes, search, .. } = self;
-        let least =
-            contacts.find(search.pairs(), |key, least: &mut MinimumLength, (): &mut ()| pairs.touching(key, least));
+        let least = contacts
+            .find(search.pairs(), |key, least: &mut MinimumLength, (): &mut ()| pairs.touching(key, least));
         let moving = !pairs.interaction.is_elastic();
         contact_nodes[0].look(&pairs.first, contacts.numbers(), moving);
         contact_nodes[1].look(&pairs.second, contacts.numbers(), moving);

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::contact::active::{ContactEnd, ContactNodes, MinimumLength, NodeLoad};
-use crate::contact::bodies::{Members, Proximity, ParticleShape, of_pair};
+use crate::contact::bodies::{Members, ParticleShape, Proximity, of_pair};
 use crate::contact::laws::Touch;
 use crate::contact::response::{ContactEnergy, ContactState, History, Interaction, Losses, PairKey};
 use crate::neighbors::Periodic;

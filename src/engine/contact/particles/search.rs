@@ -127,7 +127,11 @@ impl Search {
     }
 
     /// Finds the pairs of two bodies.
-    pub fn between(&mut self, first: ContactParticles<'_>, second: ContactParticles<'_>) -> Result<(), NeighborError> {
+    pub fn between(
+        &mut self,
+        first: ContactParticles<'_>,
+        second: ContactParticles<'_>,
+    ) -> Result<(), NeighborError> {
         self.pairs.clear();
         self.travelled = 0.0;
         let reach = self.stretch * (self.largest[0] + self.largest[1]);

@@ -44,7 +44,10 @@ impl Planner<'_> {
     ///
     /// # Errors
     /// The parameters of the law are wrong, or the domain is too short for the particles.
-    pub fn pairs_of(&mut self, named: &NamedPair<'_>) -> Result<Vec<(Touching, ContactActivity)>, Vec<Problem>> {
+    pub fn pairs_of(
+        &mut self,
+        named: &NamedPair<'_>,
+    ) -> Result<Vec<(Touching, ContactActivity)>, Vec<Problem>> {
         let (a, b) = &named.contact.between;
         let (first, second) = (find(self.sim, a), find(self.sim, b));
         match (is_rigid(first), is_rigid(second)) {
@@ -183,7 +186,11 @@ impl Planner<'_> {
     }
 
     /// Interaction of the two bodies of a contact, where surfaces or particles touch.
-    fn interaction(&self, named: &NamedPair<'_>, surface: ContactSurface) -> Result<Interaction, Vec<Problem>> {
+    fn interaction(
+        &self,
+        named: &NamedPair<'_>,
+        surface: ContactSurface,
+    ) -> Result<Interaction, Vec<Problem>> {
         let contact = named.contact;
         let [first, second] = [&contact.between.0, &contact.between.1].map(|name| find(self.sim, name));
         let softness =

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::near_tool::NearTool;
-use super::points::{Extremes, Points, VertexPress, PressPass, FacetPart, ToolView, touch_of};
+use super::points::{Extremes, FacetPart, Points, PressPass, ToolView, VertexPress, touch_of};
 use crate::contact::active::ActiveContacts;
 use crate::contact::bodies::{ContactSides, MotionBounds, failed};
 use crate::contact::laws::Touch;
@@ -130,8 +130,11 @@ impl SkinOnTool {
         let wanted = Wanted { mobility: self.interaction.damping_ratio > 0.0, gradients: false };
         self.patch.update(&view, dt, wanted);
         let Extremes { gap, stiffest } = self.press(tool, dt);
-        let mut energies =
-            if self.interaction.is_elastic() { ContactEnergy::default() } else { self.add_friction(tool, dt) };
+        let mut energies = if self.interaction.is_elastic() {
+            ContactEnergy::default()
+        } else {
+            self.add_friction(tool, dt)
+        };
         let ToolSums { on_tool, of_tool, stored, power } = self.push(tool);
         energies.stored += stored;
         energies.ahead += 0.5 * dt * power;

@@ -5,7 +5,7 @@ use crate::contact::bodies::{MemberParticles, MotionBounds, NodeTurn};
 use crate::contact::particles::ParticleContact;
 use crate::contact::response::{ContactEnergy, Histories, History, PairKey};
 use crate::contact::skins::{SkinOnTool, SkinPair};
-use crate::contact::tools::{SurfaceContact, CoupledResponse};
+use crate::contact::tools::{CoupledResponse, SurfaceContact};
 use crate::schedule::{Step, StepError};
 use crate::skins::{Last, Patch};
 use crate::world::BodyId;

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use super::{angular_momentum, momentum, simulation};
-use crate::contact::bodies::shape::{Proximity, ParticleShape, of_pair, on_surface, squared_stretch};
+use crate::contact::bodies::shape::{ParticleShape, Proximity, of_pair, on_surface, squared_stretch};
 use crate::simulation::Simulation;
 use crate::world::{BodyId, DeformationGradient};
 

@@ -63,19 +63,20 @@ impl Nearby {
     fn find(&mut self, sides: &ContactSides, nodes: &NodeView<'_>, tool: &RigidBody) -> f64 {
         let bounds = tool.surface.bounds();
         let largest_stretch = self.stretch;
-        let budget = self.filter.select(nodes.len(), &mut self.candidates, &|i, budget: &mut MinimumLength| {
-            let x = tool.reference(sides.near(nodes.position(i), tool));
-            let size = nodes.size(i);
-            let (reach, skin, near) = (largest_stretch * nodes.radius(i), SKIN * size, NEAR * size);
-            let gap = (bounds.min - x).max(x - bounds.max).max(DVec3::ZERO).length() - reach;
-            if gap < skin {
-                budget.add_length(skin - near);
-                (tool.surface.closest(x).signed_distance - reach < skin).then_some((i as u32, 0))
-            } else {
-                budget.add_length(gap - near);
-                None
-            }
-        });
+        let budget =
+            self.filter.select(nodes.len(), &mut self.candidates, &|i, budget: &mut MinimumLength| {
+                let x = tool.reference(sides.near(nodes.position(i), tool));
+                let size = nodes.size(i);
+                let (reach, skin, near) = (largest_stretch * nodes.radius(i), SKIN * size, NEAR * size);
+                let gap = (bounds.min - x).max(x - bounds.max).max(DVec3::ZERO).length() - reach;
+                if gap < skin {
+                    budget.add_length(skin - near);
+                    (tool.surface.closest(x).signed_distance - reach < skin).then_some((i as u32, 0))
+                } else {
+                    budget.add_length(gap - near);
+                    None
+                }
+            });
         budget.0
     }
 }

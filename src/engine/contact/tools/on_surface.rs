@@ -7,7 +7,7 @@ use super::nearby::NEAR;
 use super::reaction::NodePush;
 use super::together::{ContactSite, CoupledResponse};
 use crate::contact::active::MinimumLength;
-use crate::contact::bodies::{ContactSides, Proximity, NodeMotion, NodeView};
+use crate::contact::bodies::{ContactSides, NodeMotion, NodeView, Proximity};
 use crate::contact::laws::Touch;
 use crate::contact::response::time_step::NormalMotion;
 use crate::contact::response::{ContactEnergy, ContactState, History, Interaction, Losses, PairKey};
@@ -91,7 +91,12 @@ impl OnSurface<'_> {
         let held = nodes.is_held(i).then_some(i);
         let massless = usize::from(held.is_some() || matches!(nodes, NodeView::Rigid(_)));
         let landing = self.landing(i, held.is_some(), [nearest.point, own_place - center], &near);
-        near_nodes.add(&NearNodes { distance: MinimumLength(nodes.radius(i) / near.scale), held, massless, landing });
+        near_nodes.add(&NearNodes {
+            distance: MinimumLength(nodes.radius(i) / near.scale),
+            held,
+            massless,
+            landing,
+        });
         let touches = near.overlap > 0.0 && nodes.reaches(i, center, nearest.normal, tool);
         // Where the body of the node has it, a period away from the image that touches.
         touches.then(|| {

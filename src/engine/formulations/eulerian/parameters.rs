@@ -11,7 +11,7 @@ use super::dilatation::DilatationRate;
 use super::divergence::Divergence;
 use super::force::EulerianForce;
 use super::lists::{EulerianBody, EulerianLists};
-use super::near::{EulerianNeighbors, ComputePairs, NearbyMotion, NeighborRows};
+use super::near::{ComputePairs, EulerianNeighbors, NearbyMotion, NeighborRows};
 use super::pairs::EulerianPairs;
 use super::rates::{RATES, VelocityGradients};
 use super::rows::{EulerianKernel, EulerianRows, PointColumns};
@@ -24,7 +24,7 @@ use crate::plugin::{BodyKind, BodyPlan, Formulation, Offer, Setup, SetupError, S
 use crate::removal::LeavingParticles;
 use crate::scene::Dimension;
 use crate::schedule::{Mode, Stage, System};
-use crate::solids::{CORRECTED_STRESS, PACKED_SOLID, SolidBodies, AppliedLosses, require_support};
+use crate::solids::{AppliedLosses, CORRECTED_STRESS, PACKED_SOLID, SolidBodies, require_support};
 use crate::symmetry::repeats_of;
 use crate::world::{
     BodyId, BodySet, Column, ColumnSet, DeformationGradient, Force, Mass, PhaseId, PiolaStress, Position,
@@ -88,7 +88,11 @@ impl Formulation for Eulerian {
     }
 
     fn columns(columns: &mut ColumnSet) {
-        columns.add::<SupportRadius>().add::<DeformationGradient>().add::<PiolaStress>().add::<AppliedLosses>();
+        columns
+            .add::<SupportRadius>()
+            .add::<DeformationGradient>()
+            .add::<PiolaStress>()
+            .add::<AppliedLosses>();
     }
 
     fn assemble(bodies: Vec<(BodyId, Self)>, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {

@@ -17,8 +17,8 @@ use crate::parallel::{Lanes4, Maximum, split_by_rows, sum_over_blocks};
 use crate::removal::REMOVED_ENERGY;
 use crate::schedule::{Access, AccountKind, Run, Step, StepError};
 use crate::solids::{
-    BodyPass, Constitutive, CorrectedStress, Loss, SolidBlock, SolidBodies, SolidColumns, SolidPart,
-    SolidRows, SolidSum, AppliedLosses, count_rows,
+    AppliedLosses, BodyPass, Constitutive, CorrectedStress, Loss, SolidBlock, SolidBodies, SolidColumns,
+    SolidPart, SolidRows, SolidSum, count_rows,
 };
 use crate::world::{
     Force, Mass, MissingColumn, PhaseId, PhaseView, Position, ReferenceVolume, Removed, Velocity, World,

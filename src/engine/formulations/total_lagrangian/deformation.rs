@@ -8,8 +8,8 @@
 use glam::DVec3;
 
 use crate::formulations::bonded::{
-    AddIdentity, AffineFrame, Bonds, CompleteStress, CorrectStress, EdgeRows, Gather, HessianBlock, FailureState,
-    PackedParticle, Written,
+    AddIdentity, AffineFrame, Bonds, CompleteStress, CorrectStress, EdgeRows, FailureState, Gather,
+    HessianBlock, PackedParticle, Written,
 };
 use crate::linalg::Sym3;
 use crate::parallel::{BLOCK, Split, run_hot, run_hot_in};

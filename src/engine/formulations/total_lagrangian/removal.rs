@@ -9,7 +9,7 @@ use crate::formulations::bonded::{Bonds, InternalForce, PackedParticle};
 use crate::linalg::dyad;
 use crate::removal::REMOVED_ENERGY;
 use crate::schedule::{AccountKind, Step, StepError};
-use crate::solids::{Loss, SolidPart, AppliedLosses, count_rows};
+use crate::solids::{AppliedLosses, Loss, SolidPart, count_rows};
 use crate::world::{
     DeformationGradient, Force, Mass, MissingColumn, ReferencePosition, ReferenceVolume, Removed,
     SupportRadius, World,

@@ -7,7 +7,7 @@ use crate::formulations::bonded::{AffineFrame, BondedSites, EdgeRows, FrameIndif
 use crate::parallel::share_picked;
 use crate::ranks;
 use crate::schedule::{Run, Step, StepError};
-use crate::solids::{BodyPass, Loss, Refits, SolidBodies, SolidColumns, SolidPart, AppliedLosses};
+use crate::solids::{AppliedLosses, BodyPass, Loss, Refits, SolidBodies, SolidColumns, SolidPart};
 use crate::world::{Damage, MissingColumn, PhaseId, Removed, SupportRadius, Velocity, World};
 
 /// The system.

@@ -12,7 +12,8 @@ use glam::DVec3;
 
 use crate::formulations::bonded::Ellipsoid;
 use crate::neighbors::{
-    Cloud, NeighborError, NeighborList, NeighborSearch, RelativeBounds, RelativeDisplacements, Periodic, SupportRadii,
+    Cloud, NeighborError, NeighborList, NeighborSearch, Periodic, RelativeBounds, RelativeDisplacements,
+    SupportRadii,
 };
 use crate::symmetry::Ghosts;
 

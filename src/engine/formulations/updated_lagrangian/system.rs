@@ -19,8 +19,8 @@ use crate::notation::quantity;
 use crate::parallel::share_picked;
 use crate::schedule::{AccountKind, Run, Shared, Step, StepError};
 use crate::solids::{
-    BodyPass, HessianForm, Loss, SolidBodies, SolidColumns, SolidPart, StepEstimate, AppliedLosses, count_rows,
-    fill_rows,
+    AppliedLosses, BodyPass, HessianForm, Loss, SolidBodies, SolidColumns, SolidPart, StepEstimate,
+    count_rows, fill_rows,
 };
 use crate::world::{
     Damage, DeformationGradient, Force, Mass, MissingColumn, PhaseId, PhaseView, Position, ReferencePosition,

@@ -33,7 +33,9 @@ impl Measure for BodyPoints {
         let names = self.field.column_names();
         match &self.made {
             PointReduction::Line(along) => line_columns(&self.field, along),
-            PointReduction::Taken(Reduction::Minimum | Reduction::Maximum, _) => Extremum::columns(&self.field),
+            PointReduction::Taken(Reduction::Minimum | Reduction::Maximum, _) => {
+                Extremum::columns(&self.field)
+            }
             _ => names.into_iter().map(|name| (name, self.field.unit())).collect(),
         }
     }

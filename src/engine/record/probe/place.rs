@@ -12,7 +12,7 @@ use super::taken::Extremal;
 use crate::fields::ChosenField;
 use crate::notation;
 use crate::plugin::{BodyKind, BodyPlan, SimBuilder, facets_of};
-use crate::scene::{self, Line, Problem, Quantity, RelativeTo, Select, Reduction};
+use crate::scene::{self, Line, Problem, Quantity, Reduction, RelativeTo, Select};
 use crate::world::BodySet;
 
 /// Place of a probe.

@@ -71,7 +71,8 @@ impl WrongSign {
             let scale = largest.max(SHARE_OF_WEIGHT / worth * self.weight);
             let share = if scale > 0.0 { -account.total() / scale } else { 0.0 };
             let k = self.accounts.iter().position(|given| given.name == account.name).unwrap_or_else(|| {
-                self.accounts.push(SuppliedEnergy { name: account.name.clone(), ..SuppliedEnergy::default() });
+                self.accounts
+                    .push(SuppliedEnergy { name: account.name.clone(), ..SuppliedEnergy::default() });
                 self.accounts.len() - 1
             });
             let given = &mut self.accounts[k];

@@ -129,7 +129,8 @@ impl Equations {
 
 /// b of a particle in a lattice.
 fn target(lattice: &BondLattice, start: &[f64], k: u32) -> DVec3 {
-    let part =
-        |share: BondShare| start[k as usize] * share.own_part + start[share.other as usize] * share.other_part;
+    let part = |share: BondShare| {
+        start[k as usize] * share.own_part + start[share.other as usize] * share.other_part
+    };
     lattice.shares(k).map(part).sum()
 }

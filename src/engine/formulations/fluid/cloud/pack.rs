@@ -8,7 +8,7 @@ use super::flow_cloud::FlowCloud;
 use super::group::Group;
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::formulations::fluid::lists::blocks::{Packed, Units, pack_states};
-use crate::formulations::fluid::lists::{DisplacementBounds, BoundsBuilder};
+use crate::formulations::fluid::lists::{BoundsBuilder, DisplacementBounds};
 use crate::parallel::{
     FourLanes, HotLoop, Lanes4, others_rows, run_hot, sum_over_blocks, sum_over_own_blocks,
 };

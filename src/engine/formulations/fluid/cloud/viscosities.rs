@@ -27,7 +27,9 @@ impl Viscosities {
     pub fn new(groups: &[Group], h: f64) -> Self {
         let of = |a: &Group| groups.iter().map(|b| between(&a.role, &b.role)).collect::<Vec<f64>>();
         let viscous = |group: &Group| {
-            group.fluid().is_some_and(|state| state.viscosity > MIN_VISCOSITY * state.density * state.sound_speed * h)
+            group
+                .fluid()
+                .is_some_and(|state| state.viscosity > MIN_VISCOSITY * state.density * state.sound_speed * h)
         };
         Self {
             values: groups.iter().flat_map(of).collect(),

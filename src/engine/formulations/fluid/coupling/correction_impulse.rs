@@ -113,7 +113,14 @@ impl Particles<'_> {
 
     /// Puts the force of now in the place of the frozen one, and books the work of both; `velocity` is the
     /// mean of those before and after the impulse.
-    fn replace_force(&self, i: usize, k: usize, velocity: DVec3, rows: &mut ParticleRows<'_>, sum: &mut Exchange) {
+    fn replace_force(
+        &self,
+        i: usize,
+        k: usize,
+        velocity: DVec3,
+        rows: &mut ParticleRows<'_>,
+        sum: &mut Exchange,
+    ) {
         let (total, [friction, pressure]) = self.force_now(i);
         let moved = self.before.get(i).map_or(DVec3::ZERO, |before| self.records[i].position() - *before);
         let late = 0.5 * self.dt * velocity;

@@ -11,7 +11,7 @@ use std::ops::Range;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::displacement_bounds::{DisplacementBounds, BoundsBuilder};
+use super::displacement_bounds::{BoundsBuilder, DisplacementBounds};
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::neighbors::{Buckets, CellBlock, Periodic, SHIFT, sort_into_cells};
 use crate::parallel::{FourLanes, HotLoop, Lanes4, run_hot, sum_over_blocks};

@@ -156,7 +156,10 @@ mod tests {
                 assert_eq!(is_thin, place.y < 0.0, "{place}");
             }
         }
-        assert!(boat.thin(1).is_some_and(|thin| (thin.thickness - 4.0).abs() < 0.5), "a keel of 3.5 supports");
+        assert!(
+            boat.thin(1).is_some_and(|thin| (thin.thickness - 4.0).abs() < 0.5),
+            "a keel of 3.5 supports"
+        );
         assert!(of("Box(min: (-24, 0), max: (24, 16))").thin(1).is_none(), "a hull alone");
         assert!(
             of("Polygon(points: [(0, 0), (40, 23), (-40, 23)])").thin(1).is_none(),

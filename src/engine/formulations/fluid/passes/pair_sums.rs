@@ -48,11 +48,8 @@ impl<const D: usize> Forces<D> {
         if FRICTION != NONE {
             let friction = a.scale(viscosity, weight);
             for axis in 0..D {
-                let relative = if FRICTION == WITH_SPIN {
-                    a.sub(velocity[axis], turning[axis])
-                } else {
-                    velocity[axis]
-                };
+                let relative =
+                    if FRICTION == WITH_SPIN { a.sub(velocity[axis], turning[axis]) } else { velocity[axis] };
                 self.viscous[axis] = a.mul_add(friction, relative, self.viscous[axis]);
             }
         }

@@ -98,7 +98,8 @@ pub fn wall_is_thick(
     periodic: &Periodic,
 ) -> Result<Option<String>, SetupError> {
     is_fine(body, spacing)?;
-    let Some(Thin { thickness, at, is_widespread }) = Thickness::of(body, support, periodic)?.thin(EDGES) else {
+    let Some(Thin { thickness, at, is_widespread }) = Thickness::of(body, support, periodic)?.thin(EDGES)
+    else {
         return Ok(None);
     };
     let layers = (support / body.spacing - 1e-9).ceil();

@@ -181,7 +181,8 @@ impl<const HIDDEN: bool> BlockLoop for FilterLoop<'_, HIDDEN> {
 
     #[inline(always)]
     fn run<A: EightLanes>(self, a: A) {
-        let NeighborFilter { table, candidates, places, sides, unit, limit, first, counts, mut near } = self.0;
+        let NeighborFilter { table, candidates, places, sides, unit, limit, first, counts, mut near } =
+            self.0;
         let unit = [a.splat(unit[0]), a.splat(unit[1]), a.splat(unit[2])];
         let limit = a.splat(limit);
         for (k, counts) in counts.iter_mut().enumerate() {

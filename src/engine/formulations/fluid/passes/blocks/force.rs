@@ -152,7 +152,12 @@ impl<K: PairShape> BlockLoop for ForceBlocks<'_, K> {
                 }
             }
             let of_terms = &of_terms[..count];
-            land(&sums, of_terms, BlockOutput { particles, first, plane: cloud.plane, adds: *adds }, &mut rows);
+            land(
+                &sums,
+                of_terms,
+                BlockOutput { particles, first, plane: cloud.plane, adds: *adds },
+                &mut rows,
+            );
             if count > 0 {
                 fastest.add_block(of_terms);
             }

@@ -189,7 +189,12 @@ impl<'a, K: PairShape> PairsOfBlock<'a, K> {
 
     /// Adds the friction with a neighbour: `mu w (v_ij - omega_ij x x_ij)`.
     #[inline(always)]
-    fn rub<A: EightLanes, const FRICTION: u8>(&self, a: A, pair: FrictionPair<'_>, viscous: &mut [Lanes8; 3]) {
+    fn rub<A: EightLanes, const FRICTION: u8>(
+        &self,
+        a: A,
+        pair: FrictionPair<'_>,
+        viscous: &mut [Lanes8; 3],
+    ) {
         if FRICTION == NONE {
             return;
         }

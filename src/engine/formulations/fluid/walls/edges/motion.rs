@@ -68,7 +68,13 @@ impl EdgeMotion {
     }
 
     /// Computes the motion of the particles from the sums; `half` is half of the step, s.
-    fn solve_motion(&mut self, cloud: &FlowCloud, walls: &Range<usize>, half: f64, out: &mut Vec<EdgeParticle>) {
+    fn solve_motion(
+        &mut self,
+        cloud: &FlowCloud,
+        walls: &Range<usize>,
+        half: f64,
+        out: &mut Vec<EdgeParticle>,
+    ) {
         out.clear();
         for &row in &self.touched {
             let FaceSums { moments, motion, others, behind } =
