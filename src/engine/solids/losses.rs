@@ -9,7 +9,7 @@ use crate::column;
 column! {
     /// Losses of a solid that the sums over neighbours already leave out: 1 for a particle that has been
     /// removed, 2 for one that has failed, 3 for both.
-    pub struct AppliedLosses(u32) = "applied_losses", "-", "1";
+    pub struct AppliedLosses(u32) = "losses_taken_up", "-", "1";
 }
 
 /// How a particle is lost.
