@@ -96,7 +96,7 @@ fn folding(formulation: &str, contact: &str) -> Simulation {
     ))
 }
 
-/// Where the tip of the strip is at each hundredth of a second, the least distance of the upper strip from
+/// Where the tip of the strip is at each hundredth of a second, the minimum distance of the upper strip from
 /// the block, and the largest error of the energy balance.
 fn path(mut sim: Simulation) -> (Vec<DVec3>, f64, f64) {
     sim.start().expect("a start");

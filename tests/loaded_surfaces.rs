@@ -8,8 +8,8 @@ use meshless::simulation::Simulation;
 use meshless::world::{BodyId, DeformationGradient, Mass, Velocity};
 
 /// The strain along y of all particles of a block that is pressed from above by 1e5 Pa, over that of the
-/// closed form, from the least to the largest one; the block stands on one side and leans on the other, held
-/// along the normals of both.
+/// closed form, from the smallest to the largest one; the block stands on one side and leans on the other,
+/// held along the normals of both.
 fn strains(formulation: &str) -> (f64, f64) {
     let mut sim = simulation(&Source::new(
         "block.ron",

@@ -189,7 +189,7 @@ fn failure() {
     each("plugin", "failure(criterion: MaximumPrincipalStrain({}))", &[("limit", "0.0"), ("limit", "-0.1")]);
     each("plugin", "failure(criterion: MaximumPrincipalStress({}))", &[("limit", "0.0")]);
     let strain = "failure(criterion: JohnsonCook(d1: 0.1, d2: 0.0, d3: 0.0, {}))";
-    let more = [("reference_rate", "0.0"), ("reference_temperature", "0.0"), ("least_strain", "0.0")];
+    let more = [("reference_rate", "0.0"), ("reference_temperature", "0.0"), ("minimum_strain", "0.0")];
     each("plugin", strain, &more);
     each("plugin", &strain.replace("{}", "d5: 1.0, {}"), &[("melt_temperature", "20.0")]);
     let growth = "failure(criterion: MaximumPrincipalStrain(limit: 0.1), growth: CrackSpeed({}))";
@@ -215,8 +215,8 @@ fn contact_and_tools() {
     each("contact", &pattern, &[("friction", "-0.1"), ("restitution", "-0.1"), ("restitution", "1.1")]);
     each("tool", "Rigid({})", &[("mass", "0.0"), ("mass", "-1.0"), ("spin", "(1.0, 0.0, 0.0)")]);
     each("tool", "Rigid({})", &[("rotation", "About(0.0, 0.0, 0.0)")]);
-    let turn = r#"Turn(on: Select(body: "tool"), rate: 1.0, {})"#;
-    each("condition", turn, &[("axis", "(1.0, 0.0, 0.0)"), ("axis", "(0.0, 0.0, 0.0)")]);
+    let rotation = r#"RotationRate(on: Select(body: "tool"), rate: 1.0, {})"#;
+    each("condition", rotation, &[("axis", "(1.0, 0.0, 0.0)"), ("axis", "(0.0, 0.0, 0.0)")]);
     let range = [("support", "1.0"), ("support", "20.0"), ("neighbors", "2"), ("neighbors", "4000")];
     each("formulation", "TotalLagrangian({})", &range);
     // The second body of a formulation is another place than the first.

@@ -39,7 +39,7 @@ const PLUGINS: &[(&str, Of, [&str; 2])] = &[
             "criterion: MaximumPrincipalStrain(limit: 0.03), then: RemovedAtSurface",
         ],
     ),
-    ("remove_fragments", Of::Solids, ["", "least_volume: 0.3, particles: 3"]),
+    ("remove_fragments", Of::Solids, ["", "minimum_volume_ratio: 0.3, particles: 3"]),
     (
         "heat_conduction",
         Of::Solids,

@@ -1,8 +1,8 @@
-//! `meshless bench`: how fast the program is on the benchmark cases, with everything on and output off.
+//! `meshless bench`: speed of the program on the benchmark cases, with all diagnostics on and output off.
 //!
-//! A case is a scene of `benches/scenes/` at a given number of particles; it runs through the registry, with
+//! A case is a scene of `benches/scenes/` at a given number of particles. It runs through the registry with
 //! ledger, watchdog and adaptive step, as any scene does. Absolute figures differ from machine to machine:
-//! ratios of benchmarks measured in one call count.
+//! only ratios of benchmarks measured in one call are meaningful.
 
 mod apart;
 mod bench_case;
@@ -57,7 +57,7 @@ pub struct BenchArguments {
     here: bool,
 }
 
-/// All pairs of the two.
+/// All combinations of a number of ranks and a number of threads.
 fn pairs(ranks: &[u16], threads: &[u16]) -> impl Iterator<Item = (u16, u16)> {
     ranks.iter().flat_map(|&ranks| threads.iter().map(move |&threads| (ranks, threads)))
 }
@@ -74,11 +74,11 @@ pub fn execute(arguments: &BenchArguments, registry: &Registry) -> Result<(), Co
     if !arguments.json {
         say(&report::heading(&machine::describe()));
     }
-    let least = Duration::from_secs_f64(arguments.seconds);
+    let duration = Duration::from_secs_f64(arguments.seconds);
     for &particles in &arguments.particles {
         for case in &cases {
             for (ranks, threads) in pairs(&arguments.ranks, &arguments.threads) {
-                let set_up = BenchSetUp { case, particles, ranks, threads, least };
+                let set_up = BenchSetUp { case, particles, ranks, threads, duration };
                 let measurement = match arguments.here {
                     true => Measurement::take(&set_up, registry)?,
                     false => apart::take(&set_up, instructions)?,

@@ -151,8 +151,8 @@ fn table(scene: &Scene, bodies: &[BodyReport]) -> String {
     ];
     let mut table = TextTable::new(&headings, 8);
     for body in bodies {
-        let [mean, least, most] = match body.neighbours {
-            Some((mean, least, most)) => [format!("{mean:.1}"), least.to_string(), most.to_string()],
+        let [mean, min, max] = match body.neighbours {
+            Some((mean, min, max)) => [format!("{mean:.1}"), min.to_string(), max.to_string()],
             None => ["-".to_owned(), "-".to_owned(), "-".to_owned()],
         };
         table.row([
@@ -165,8 +165,8 @@ fn table(scene: &Scene, bodies: &[BodyReport]) -> String {
             number(body.mass),
             body.sound_speed.map_or_else(|| "-".to_owned(), |speed| quantity(speed, "m/s")),
             mean,
-            least,
-            most,
+            min,
+            max,
         ]);
     }
     table.render()

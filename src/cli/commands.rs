@@ -67,8 +67,7 @@ impl Command {
     }
 }
 
-/// Runs the program with the arguments it was started with: the whole `main` of a program that scenes are run
-/// with.
+/// Runs the program with its command-line arguments: the whole `main` of a program that runs scenes.
 pub fn run(registry: Registry) -> ExitCode {
     ranks::let_the_first_speak();
     let command = match CommandLine::try_parse() {
@@ -90,7 +89,7 @@ fn unwritten(error: &io::Error) -> CommandFailure {
     CommandFailure::Run(format!("cannot write to the standard output: {error}"))
 }
 
-/// Reports a failure; the exit code.
+/// Reports a failure and returns the exit code.
 fn ended(done: Result<(), CommandFailure>) -> ExitCode {
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,4 +1,4 @@
-//! The loop over the steps of a run, and how it ends.
+//! The time loop of a run and its end.
 
 use std::path::PathBuf;
 use std::time::{Duration, SystemTime};
@@ -24,7 +24,7 @@ use super::summary;
 use super::text::{complain, program, quoted, say, speaks};
 use super::values::whole;
 
-/// By how much clocks of files may be behind.
+/// Maximum lag of the clock of the file system.
 const CLOCK: Duration = Duration::from_millis(20);
 
 /// Options of execution; results do not depend on any of them.
@@ -58,12 +58,12 @@ impl How {
     }
 }
 
-/// Takes the instruction path of that name, if there is one.
+/// Selects the instruction path of this name, if one is given.
 pub fn take_instructions(name: Option<&str>) -> Result<(), CommandFailure> {
     name.map_or(Ok(()), take_instruction_path).map_err(|error| CommandFailure::Usage(error.to_string()))
 }
 
-/// Prepares a run and carries it out, on all ranks that have been started together.
+/// Prepares and runs a simulation on all ranks that have been started together.
 pub fn carry_out_together(
     how: &How,
     prepare: impl FnOnce() -> Result<Execution, CommandFailure> + Send,
@@ -96,12 +96,13 @@ impl Execution {
         Ok(Self { sim, _lock: Lock::of(&folder)?, folder, source: source.clone(), begun })
     }
 
-    /// Does the steps, shows how far they are, and reports at the end.
+    /// Runs the time loop, shows its progress, and reports at the end.
     pub fn carry_out(&mut self, how: &How) -> Result<(), CommandFailure> {
         require_equal("scene", &self.source.text)?;
         let interrupt = Interrupt::listen()?;
         let mut progress = ProgressLine::new(&self.sim, how.quiet);
-        // On a thread of the pool: a parallel loop that begins outside has to wake one each time.
+        // The loop runs on a thread of the pool: a parallel loop that starts outside the pool has to wake a
+        // thread each time.
         let steps = match ranks::has_several() {
             true => self.steps(how.steps, &interrupt, &mut progress),
             false => rayon::scope(|_| self.steps(how.steps, &interrupt, &mut progress)),
@@ -123,7 +124,7 @@ impl Execution {
                     progress.steps(&self.sim),
                     &self.sim.state_hash(),
                 ));
-                // What lies there is a help to the user; a folder that cannot be listed is no failure of the
+                // The list of files is a convenience: a folder that cannot be listed is no failure of the
                 // run.
                 if speaks()
                     && let Ok(files) = self.files()
@@ -164,7 +165,7 @@ impl Execution {
         Ok(())
     }
 
-    /// Saves the state of a run that cannot go on, beside the last checkpoint.
+    /// Saves the state of a failed run, beside the last checkpoint.
     fn keep_failed_state(&self) -> Option<PathBuf> {
         let file = self.folder.join(FAILED);
         match self.sim.save(&file, &self.source) {
@@ -176,7 +177,7 @@ impl Execution {
         }
     }
 
-    /// Content of the output folder, and its treatment.
+    /// The files in the output folder, and the commands that use them.
     fn files(&self) -> Result<String, CommandFailure> {
         let (mut names, mut frames, mut earlier) = (Vec::new(), 0, 0);
         for file in folder::files(&self.folder)? {

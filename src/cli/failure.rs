@@ -1,4 +1,4 @@
-//! How a command fails, and the exit code of each way.
+//! Failures of commands, and their exit codes.
 
 #[cfg(feature = "rerun")]
 use meshless_engine::record::WriteError;
@@ -20,15 +20,14 @@ pub enum CommandFailure {
     /// The run failed, or a file could not be read or written. Exit code 1.
     #[error("error: {0}")]
     Run(String),
-    /// One of several ranks has printed the error already. Its exit code.
+    /// Another of several ranks has printed the error already; its exit code.
     #[error("the run has failed")]
     #[cfg_attr(
         not(feature = "mpi"),
         expect(dead_code, reason = "a program built without MPI is one process")
     )]
     Told(u8),
-    /// A signal stopped the run, by its number. Exit code 128 and this number, as shells count a program that
-    /// was ended by it.
+    /// A signal stopped the run; its number. The exit code is 128 plus this number, as in shells.
     #[error("the run was interrupted")]
     Interrupted(u8),
 }

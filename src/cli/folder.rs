@@ -8,7 +8,7 @@ use super::failure::CommandFailure;
 
 /// Name of the checkpoint of a run.
 pub const CHECKPOINT: &str = "checkpoint.mlc";
-/// Name of the state in which a run has failed.
+/// Name of the saved state of a failed run.
 pub const FAILED: &str = "failed.mlc";
 
 /// First bytes of a recording.
@@ -20,7 +20,7 @@ pub fn default_folder(scene: &Path) -> PathBuf {
     Path::new("out").join(stem)
 }
 
-/// The checkpoint itself, or that of the folder.
+/// The path of a checkpoint, given directly or by its folder.
 pub fn checkpoint(path: &Path) -> Result<PathBuf, CommandFailure> {
     let file = if path.is_dir() { path.join(CHECKPOINT) } else { path.to_path_buf() };
     if file.is_file() {
@@ -33,7 +33,7 @@ pub fn checkpoint(path: &Path) -> Result<PathBuf, CommandFailure> {
     )))
 }
 
-/// The recording itself, or the one of the folder that was written last.
+/// The path of a recording, given directly or as the newest in its folder.
 pub fn recording(path: &Path) -> Result<PathBuf, CommandFailure> {
     if path.is_file() {
         return match is_recording(path) {

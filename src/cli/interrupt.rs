@@ -6,10 +6,10 @@ use std::sync::atomic::{AtomicU8, Ordering};
 use super::failure::CommandFailure;
 use super::text::complain;
 
-/// The signal by which the user or the system has asked to stop, 0 for none; one for the program.
+/// Number of the signal that has requested the end of the run, 0 for none; one for the program.
 static ASKED: AtomicU8 = AtomicU8::new(0);
 
-/// Whether the run has been asked to stop.
+/// Whether the end of the run has been requested.
 #[derive(Clone, Copy)]
 pub struct Interrupt(());
 
@@ -23,18 +23,18 @@ impl Interrupt {
         }
     }
 
-    /// Whether the run has been asked to stop.
+    /// Whether the end of the run has been requested.
     pub fn asked(self) -> bool {
         self.signal() != 0
     }
 
-    /// The number of the signal that has asked it to stop, 0 for none.
+    /// The number of the signal that has requested the end of the run, 0 for none.
     pub fn signal(self) -> u8 {
         ASKED.load(Ordering::SeqCst)
     }
 }
 
-/// Takes note of a signal.
+/// Stores the number of a signal.
 fn stop(signal: u8) {
     if ASKED.swap(signal, Ordering::SeqCst) != 0 {
         std::process::exit(i32::from(exit_code(signal)));
@@ -42,15 +42,15 @@ fn stop(signal: u8) {
     complain("stopping after this step; a second Ctrl-C ends the program at once");
 }
 
-/// The exit code of a program that a signal has ended, as shells count: 130 for Ctrl-C, 143 for SIGTERM, 129
-/// for SIGHUP.
+/// The exit code of a program ended by a signal, as in shells: 130 for Ctrl-C, 143 for SIGTERM, 129 for
+/// SIGHUP.
 pub fn exit_code(signal: u8) -> u8 {
     128 + signal
 }
 
-/// Calls `then` with the number of each signal to stop, on a thread of its own. A closed terminal that the
-/// program was started to ignore, as `nohup` starts it, stays ignored; Ctrl-C is heard by programs that a
-/// script started in the background, too.
+/// Calls `then` with the number of each signal to stop, on a thread of its own. SIGHUP stays ignored if the
+/// program was started so, as by `nohup`; Ctrl-C also stops a program that a script has started in the
+/// background.
 #[cfg(unix)]
 fn listen(then: fn(u8)) -> std::io::Result<()> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
@@ -67,7 +67,7 @@ fn listen(then: fn(u8)) -> std::io::Result<()> {
     Ok(())
 }
 
-/// The signals that are ignored, a bit for each, as Linux tells; none where it is not known.
+/// The ignored signals, one bit each, from Linux; none if unknown.
 #[cfg(unix)]
 fn ignored() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
@@ -75,7 +75,7 @@ fn ignored() -> u64 {
     mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
 }
 
-/// The same where there is Ctrl-C alone.
+/// The same on systems with Ctrl-C only.
 #[cfg(not(unix))]
 fn listen(then: fn(u8)) -> Result<(), ctrlc::Error> {
     /// Number of the signal of Ctrl-C.

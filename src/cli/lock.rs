@@ -7,14 +7,14 @@ use meshless_engine::ranks;
 
 use super::failure::CommandFailure;
 
-/// Holds the folder of a run until it is dropped, or until the program ends in whatever way.
+/// A lock on the folder of a run, held until it is dropped or the program ends.
 pub struct Lock {
-    /// None where the system locks no folders: then nobody is kept out.
+    /// None if the system cannot lock folders; concurrent runs are then not detected.
     _folder: Option<File>,
 }
 
 impl Lock {
-    /// Takes the folder, which must exist; of several ranks the first one does.
+    /// Locks the folder, which must exist; of several ranks only the first one locks it.
     pub fn of(folder: &Path) -> Result<Self, CommandFailure> {
         let held = ranks::is_first().then(|| File::open(folder).ok()).flatten();
         let Some(file) = held else { return Ok(Self { _folder: None }) };

@@ -1,6 +1,6 @@
 //! Memory and processor time of this program.
 
-/// Memory that this program takes, where the system tells, B.
+/// Resident memory of this program, B; none if the system does not report it.
 pub fn resident_bytes() -> Option<usize> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
@@ -8,7 +8,7 @@ pub fn resident_bytes() -> Option<usize> {
     Some(kilobytes * 1024)
 }
 
-/// Time that the processors have spent on this program, s, as far as the system tells.
+/// Processor time of this program, s; none if the system does not report it.
 pub fn processor_seconds() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/self/stat").ok()?;
     // The name of the program, in parentheses, may hold spaces; the times are the 12th and 13th fields behind

@@ -1,4 +1,4 @@
-//! How many neighbours the particles of a body have.
+//! Numbers of neighbours of the particles of a body.
 
 use meshless_engine::formulations::fluid::FlowCloud;
 use meshless_engine::glam::DVec3;
@@ -12,15 +12,15 @@ use super::failure::CommandFailure;
 pub struct NeighborCounts {
     /// Mean.
     pub mean: f64,
-    /// Least.
-    pub least: usize,
-    /// Most.
-    pub most: usize,
+    /// Minimum.
+    pub min: usize,
+    /// Maximum.
+    pub max: usize,
 }
 
 impl NeighborCounts {
-    /// Counts the neighbours of the particles of a body: those of the reference configuration in solids,
-    /// those that are near now in fluids. None where particles have no neighbours of their own.
+    /// Counts the neighbours of the particles of a body: in the reference configuration for solids, in the
+    /// current one for fluids. None if particles have no neighbour lists.
     pub fn count(sim: &Simulation, body: BodyId) -> Result<Option<Self>, CommandFailure> {
         if let Some(cloud) = FlowCloud::whole(sim.resources())
             && let Some(counts) = cloud.neighbor_counts(body)
@@ -44,8 +44,8 @@ impl NeighborCounts {
     }
 
     fn of(counts: &[usize]) -> Option<Self> {
-        let (least, most) = (*counts.iter().min()?, *counts.iter().max()?);
+        let (min, max) = (*counts.iter().min()?, *counts.iter().max()?);
         let mean = counts.iter().sum::<usize>() as f64 / counts.len() as f64;
-        Some(Self { mean, least, most })
+        Some(Self { mean, min, max })
     }
 }

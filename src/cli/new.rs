@@ -31,7 +31,7 @@ macro_rules! templates {
     };
 }
 
-/// The scenes of the project are the templates, but for those that need a file beside them.
+/// The scenes of the project are the templates, except those that need a file beside them.
 const TEMPLATES: &[SceneTemplate] = &templates![
     "cantilever",
     "oscillating_plate",

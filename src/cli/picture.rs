@@ -30,7 +30,7 @@ pub struct PictureArguments {
     force: bool,
 }
 
-/// Least and largest number of pixels of a side.
+/// Range of the number of pixels of a side.
 const SIDES: std::ops::RangeInclusive<usize> = 64..=8192;
 
 fn size(text: &str) -> Result<(usize, usize), String> {
@@ -56,7 +56,7 @@ pub fn execute(arguments: &PictureArguments) -> Result<(), CommandFailure> {
         complain(&format!("warning: the recording has no end, as that of a run that was killed: {end}"));
     }
     let (width, height) = arguments.size;
-    let look = rerun_recorder::Look { width, height, smooth: arguments.smooth };
+    let look = rerun_recorder::DrawStyle { width, height, smooth: arguments.smooth };
     let picture =
         rerun_recorder::draw(&frame, look).map_err(|error| CommandFailure::Run(error.to_string()))?;
     let file = arguments.out.clone().unwrap_or_else(|| {

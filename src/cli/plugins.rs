@@ -165,7 +165,7 @@ fn describe(registry: &Registry, name: &str) -> Result<String, CommandFailure> {
         let mut known: Vec<&str> = all.iter().map(|(_, entry)| entry.name).collect();
         known.extend(sections.iter().flat_map(|(_, entries)| entries.iter().map(|(name, _)| name.as_str())));
         let (message, helps) = unknown("name", name, &known);
-        // Of the help only the nearest name: all together fill a screen.
+        // Only the nearest name of the help is shown: the list of all names fills the screen.
         let near = helps.iter().filter(|help| help.starts_with("did")).map(|help| format!("; {help}"));
         return Err(CommandFailure::Usage(format!(
             "{message}{}\n`{} plugins` lists all that scenes can name",

@@ -1,4 +1,4 @@
-//! What the user sees while a run goes on: a bar on a terminal, plain lines elsewhere.
+//! Progress of a run: a bar on a terminal, plain lines elsewhere.
 
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
@@ -16,7 +16,7 @@ const LINE_INTERVAL: Duration = Duration::from_secs(10);
 /// Ticks of the bar for the whole run.
 const TICKS: u64 = 1000;
 
-/// Shows how far a run is.
+/// Shows the progress of a run.
 pub struct ProgressLine {
     display: Display,
     interval: Duration,
@@ -33,7 +33,7 @@ enum Display {
 }
 
 impl ProgressLine {
-    /// Starts to watch a run; the time that it has behind it does not count for the rates.
+    /// Starts the display; earlier time and steps do not count for the rates.
     pub fn new(sim: &Simulation, quiet: bool) -> Self {
         let terminal = std::io::stderr().is_terminal();
         let display = match (quiet || !speaks(), terminal) {
@@ -68,7 +68,7 @@ impl ProgressLine {
         self.steps(sim) as f64 * sim.world().len() as f64 / self.elapsed().max(1e-9)
     }
 
-    /// To be called after every step: shows new warnings, and the state if it is due.
+    /// Called after every step: shows new warnings, and the progress if it is due.
     pub fn update(&mut self, sim: &Simulation) {
         self.warn(sim);
         if self.shown.elapsed() < self.interval {
@@ -86,7 +86,7 @@ impl ProgressLine {
         }
     }
 
-    /// Shows the last warnings, and takes the bar away.
+    /// Shows the last warnings and removes the bar.
     pub fn finish(&mut self, sim: &Simulation) {
         self.warn(sim);
         if let Display::Bar(bar) = &self.display {

@@ -1,4 +1,4 @@
-//! Commands that several ranks carry out together, started by `mpirun`.
+//! Commands that several ranks execute together, started by `mpirun`.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -8,7 +8,8 @@ use meshless_engine::simulation::RunError;
 use super::failure::CommandFailure;
 use super::text::{complain, speak};
 
-/// Where MPI libraries tell a process how many there are, its number, and how many are on its machine.
+/// Environment variables of MPI libraries: the number of processes, the number of this one, and the number of
+/// processes on its machine.
 const SIZES: [&str; 3] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MPI_LOCALNRANKS"];
 const NUMBERS: [&str; 2] = ["OMPI_COMM_WORLD_RANK", "PMI_RANK"];
 const LOCAL_SIZES: [&str; 2] = ["OMPI_COMM_WORLD_LOCAL_SIZE", "MPI_LOCALNRANKS"];
@@ -17,7 +18,7 @@ fn number_in(names: &[&str]) -> Option<usize> {
     names.iter().find_map(|name| std::env::var(name).ok()?.parse().ok())
 }
 
-/// Leaves it to the first of several processes to speak to the user.
+/// Lets only the first of several processes print.
 pub fn let_the_first_speak() {
     speak(number_in(&NUMBERS).unwrap_or(0) == 0);
 }
@@ -27,16 +28,15 @@ pub fn started() -> usize {
     number_in(&SIZES).unwrap_or(1)
 }
 
-/// Threads of a rank, where the user does not say: the cores of the machine over the ranks that are on it.
-/// None for a program that runs alone.
+/// Default number of threads of a rank: the cores of the machine over the number of ranks on it. None for a
+/// program that runs alone.
 pub fn usual_threads() -> Option<usize> {
     let here = number_in(&LOCAL_SIZES).filter(|_| started() > 1)?;
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     Some((cores / here.max(1)).max(1))
 }
 
-/// Carries a command out as one of the ranks, on a thread of the pool: parallel loops and exchanges begin
-/// there.
+/// Executes a command as one of the ranks, on a thread of the pool: parallel loops and exchanges begin there.
 pub fn together<T: Send>(
     command: impl FnOnce() -> Result<T, CommandFailure> + Send,
 ) -> Result<T, CommandFailure> {
@@ -54,8 +54,7 @@ fn on_ranks<T>(_: usize, command: impl FnOnce() -> Result<T, CommandFailure>) ->
         let done = require_equal("program", env!("CARGO_PKG_VERSION"))
             .and_then(|()| require_equal("instruction path", meshless_engine::parallel::instruction_path()))
             .and_then(|()| command());
-        // As soon as one process ends with an error, `mpirun` ends the others, which may not have told theirs
-        // yet.
+        // `mpirun` ends all processes as soon as one fails; the others may not have printed their errors yet.
         done.map_err(|failure| {
             failure.report();
             ranks::any(true);
@@ -81,7 +80,7 @@ pub fn require_equal(what: &str, value: &str) -> Result<(), CommandFailure> {
     }
 }
 
-/// The prepared value, if all ranks have succeeded. A failure of this rank only is printed by it.
+/// The prepared value, if all ranks have succeeded. A failure of this rank only is printed here.
 pub fn all_or_none<T>(prepared: Result<T, CommandFailure>) -> Result<T, CommandFailure> {
     if !ranks::has_several() || !ranks::any(prepared.is_err()) {
         return prepared;
@@ -97,7 +96,7 @@ pub fn all_or_none<T>(prepared: Result<T, CommandFailure>) -> Result<T, CommandF
     }
 }
 
-/// Ends all ranks where one cannot go on and the others do not know: what it has to write cannot be written.
+/// Ends all ranks if this one cannot write its output, which the others do not notice.
 pub fn end_if_alone_with(error: &RunError) {
     if error.is_of_output() && ranks::has_several() {
         complain(&format!("error: {error}"));
@@ -105,7 +104,7 @@ pub fn end_if_alone_with(error: &RunError) {
     }
 }
 
-/// Refuses a command that several processes cannot carry out together.
+/// Rejects a command that several processes cannot execute together.
 pub fn require_one() -> Result<(), CommandFailure> {
     match started() {
         1 => Ok(()),

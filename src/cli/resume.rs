@@ -1,4 +1,4 @@
-//! `meshless resume`: a run that goes on from a checkpoint.
+//! `meshless resume`: continues a run from a checkpoint.
 
 use std::path::{Path, PathBuf};
 
@@ -37,7 +37,7 @@ pub struct ResumeArguments {
     how: How,
 }
 
-/// Goes on from the checkpoint, in the folder it is in.
+/// Continues from the checkpoint, in its folder.
 pub fn execute(arguments: ResumeArguments, registry: &Registry) -> Result<(), CommandFailure> {
     let how = arguments.how.clone();
     carry_out_together(&how, || prepared(arguments, registry))
@@ -83,7 +83,7 @@ fn prepared(arguments: ResumeArguments, registry: &Registry) -> Result<Execution
     Ok(execution)
 }
 
-/// The name of a scene file that the user gives, which must be there.
+/// The path of a scene file given by the user, which must exist.
 fn at_new_place(scene: &Path) -> Result<String, CommandFailure> {
     if !scene.is_file() {
         return Err(CommandFailure::Usage(format!("the scene file `{}` does not exist", scene.display())));
@@ -91,7 +91,7 @@ fn at_new_place(scene: &Path) -> Result<String, CommandFailure> {
     Ok(std::path::absolute(scene).unwrap_or_else(|_| scene.to_path_buf()).display().to_string())
 }
 
-/// The scene with another end time. What follows from the end time where the scene is silent stays as it was.
+/// The scene with another end time. The interval of recording that follows from the end time keeps its value.
 fn prolonged(scene: &Scene, source: &Source, end: f64) -> Result<(Scene, Source), SceneError> {
     let interval = format!("{:?}", scene.record_interval());
     let mut settings = vec![("time.end", format!("{end:?}"))];

@@ -1,4 +1,4 @@
-//! The scene argument that several commands share: a file and values that replace some of its own.
+//! The scene argument of several commands: a file and overrides.
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -8,8 +8,8 @@ use meshless_engine::assembly::name_problems;
 use meshless_engine::plugin::Registry;
 use meshless_engine::scene::{self, Problem, Scene, SceneError, Source};
 
-/// Largest scene that is read from the standard input, B.
-const LARGEST_INPUT: u64 = 64 << 20;
+/// Maximum size of a scene from the standard input, B.
+const MAX_INPUT: u64 = 64 << 20;
 
 /// A scene file, with replaced values.
 #[derive(Args)]
@@ -39,14 +39,14 @@ impl SceneFile {
         if self.path == Path::new("-") { Path::new("stdin.ron") } else { &self.path }
     }
 
-    /// Reads the scene, whose names the registry knows.
+    /// Reads the scene and checks its names against the registry.
     pub fn load(&self, registry: &Registry) -> Result<(Scene, Source), SceneError> {
         let names = |scene: &Scene| name_problems(scene, registry);
         if self.path != Path::new("-") {
             return scene::load_checked(&self.path, &self.set, &names);
         }
         let mut text = String::new();
-        let read = std::io::stdin().take(LARGEST_INPUT).read_to_string(&mut text);
+        let read = std::io::stdin().take(MAX_INPUT).read_to_string(&mut text);
         let source = Source::new("stdin.ron", text);
         if let Err(error) = read {
             return Err(

@@ -1,4 +1,4 @@
-//! `meshless schema`: the reference of everything a scene can say, as Markdown.
+//! `meshless schema`: the reference of the scene language, as Markdown.
 
 use std::fmt::Write;
 

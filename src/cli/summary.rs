@@ -1,4 +1,4 @@
-//! What a run tells at its end: times, energies, warnings, sources of the methods.
+//! The summary of a run: times, energies, warnings, sources of the methods.
 
 use std::fmt::Write;
 
@@ -10,7 +10,7 @@ use meshless_engine::simulation::{Outcome, Summary};
 
 use super::text::{TextTable, counted, duration};
 
-/// The summary; `steps` are those done since the run was started or taken up.
+/// The summary; `steps` are those since the run was started or resumed.
 pub fn text(summary: &Summary, ledger: &Ledger, steps: u64, state: &StateHash) -> String {
     let mut text = String::new();
     let (time, end) = (quantity(summary.time, "s"), quantity(summary.end_time, "s"));
@@ -78,10 +78,10 @@ fn energies(ledger: &Ledger) -> String {
     table.render() + &negative(ledger)
 }
 
-/// Energies beside the largest one of which the summary speaks.
+/// Minimum of a negative account that the summary explains, over the largest one.
 const NOTABLE: f64 = 1e-3;
 
-/// Explains accounts of dissipation below zero.
+/// Explains negative accounts of dissipation.
 fn negative(ledger: &Ledger) -> String {
     let accounts = ledger.accounts().iter();
     let peak = accounts.clone().map(|account| account.total().abs()).fold(0.0, f64::max);

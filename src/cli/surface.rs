@@ -63,7 +63,7 @@ pub fn execute(arguments: &SurfaceArguments) -> Result<(), CommandFailure> {
     Ok(())
 }
 
-/// A build without surfaces cannot make any.
+/// A build without surfaces cannot reconstruct any.
 #[cfg(not(feature = "surfaces"))]
 pub fn execute(arguments: &SurfaceArguments) -> Result<(), CommandFailure> {
     let SurfaceArguments { path, .. } = arguments;

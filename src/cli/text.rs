@@ -5,18 +5,18 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-/// Error that has kept lines for the user from being written.
+/// First error of writing to the standard output.
 static UNSAID: Mutex<Option<std::io::Error>> = Mutex::new(None);
 
-/// Whether this process speaks to the user: of several ranks one alone.
+/// Whether this process prints: of several ranks only one does.
 static SPEAKS: AtomicBool = AtomicBool::new(true);
 
-/// Sets whether this process speaks to the user.
+/// Sets whether this process prints.
 pub fn speak(speaks: bool) {
     SPEAKS.store(speaks, Ordering::Relaxed);
 }
 
-/// Whether this process speaks to the user.
+/// Whether this process prints.
 pub fn speaks() -> bool {
     SPEAKS.load(Ordering::Relaxed)
 }
@@ -34,8 +34,7 @@ pub fn say(text: &str) {
     }
 }
 
-/// Why what was to be said has not reached its reader, if it has not. That nobody reads on, as after `|
-/// head`, is no failure.
+/// The error of the standard output, if there was one. A closed pipe, as after `| head`, is no error.
 pub fn unsaid() -> Option<std::io::Error> {
     let error = UNSAID.lock().ok()?.take();
     error.filter(|error| error.kind() != ErrorKind::BrokenPipe)
@@ -56,8 +55,8 @@ pub fn complain(text: &str) {
     let _ = writeln!(std::io::stderr(), "{}", text.trim_end());
 }
 
-/// How this program was called, for hints that can be pasted: its path, or its name where the shell has found
-/// it.
+/// The command of this program, for hints that can be pasted: its path, or its name if the shell finds it by
+/// that.
 pub fn program() -> String {
     let called = std::env::args().next().filter(|called| called.contains(std::path::MAIN_SEPARATOR));
     called.map_or_else(|| "meshless".to_owned(), |path| quoted(&path))
@@ -91,9 +90,9 @@ pub fn bytes(count: usize) -> String {
     }
 }
 
-/// A duration in the two largest units that say something: `2 h 5 min`, `12 s`, `0.35 s`.
+/// A duration in its two largest units: `2 h 5 min`, `12 s`, `0.35 s`.
 pub fn duration(seconds: f64) -> String {
-    // Beyond that the number says nothing more.
+    // Longer durations are meaningless.
     if seconds.is_nan() || seconds >= 3.6e9 {
         return "more than a hundred years".into();
     }

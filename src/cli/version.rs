@@ -1,4 +1,4 @@
-//! What `meshless --version` tells: enough to build the same program again.
+//! The text of `meshless --version`: enough to build the same program again.
 
 /// Version of the viewer whose recordings the program writes.
 #[cfg(feature = "rerun")]

@@ -18,7 +18,7 @@ pub fn serve(recording: &Path, port: u16, browser: bool) -> Result<(), CommandFa
          the viewer as a program of its own is faster: pip install rerun-sdk==0.36.3",
         recording.display()
     );
-    // Whoever reads the address from a pipe shall have it at once.
+    // A reader of a pipe gets the address at once.
     let mut out = std::io::stdout();
     writeln!(out, "{text}")
         .and_then(|()| out.flush())
@@ -30,7 +30,7 @@ pub fn serve(recording: &Path, port: u16, browser: bool) -> Result<(), CommandFa
     Ok(())
 }
 
-/// Opens an address in the browser of the desktop. Where there is none, the address has been printed.
+/// Opens an address in the browser of the desktop. If there is none, the printed address remains.
 fn open(url: &str) {
     let mut command = if cfg!(target_os = "macos") {
         Command::new("open")
@@ -42,6 +42,6 @@ fn open(url: &str) {
         Command::new("xdg-open")
     };
     let quiet = command.arg(url).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
-    // A desktop without a browser is no reason to stop.
+    // A desktop without a browser is no error.
     let _ = quiet.spawn();
 }

@@ -109,7 +109,7 @@ pub enum RunError {
     /// No program does as many steps.
     #[error(
         "the run must take fewer than {} steps, found {} of {}, limited by {by}",
-        number(MOST_STEPS), number(end / dt), quantity(*.dt, "s")
+        number(MAX_STEPS), number(end / dt), quantity(*.dt, "s")
     )]
     TooManySteps {
         /// Proposed step, s.
@@ -128,8 +128,8 @@ impl RunError {
     }
 }
 
-/// Least step, as a share of the whole duration, of a run whose step shrinks.
-const LEAST_STEP: f64 = 1e-12;
+/// Minimum step, as a share of the whole duration, of a run whose step shrinks.
+const MIN_STEP: f64 = 1e-12;
 /// The step of such a run over the first one, at most.
 const SHRUNK: f64 = 1e-3;
 /// Steps between two checks whether ranks are ready together.
@@ -137,7 +137,7 @@ const STEPS_BETWEEN_CUTS: u64 = 50;
 /// Steps between two checks whether all ranks have the same energies.
 const STEPS_BETWEEN_LOOKS: u64 = 16;
 /// Steps that no run takes.
-const MOST_STEPS: f64 = 1e15;
+const MAX_STEPS: f64 = 1e15;
 
 impl Simulation {
     pub(crate) fn new(parts: SimulationParts, scene: &Scene) -> Self {
@@ -397,11 +397,11 @@ impl Simulation {
             scene::StepRule::Adaptive { factor } => {
                 let limit = self.next_limit.as_ref().ok_or(RunError::NoLimit)?;
                 let (dt, by) = (limit.dt, || limit.by.clone());
-                let fell = dt <= LEAST_STEP * self.end && dt < SHRUNK * self.first_dt;
+                let fell = dt <= MIN_STEP * self.end && dt < SHRUNK * self.first_dt;
                 if dt.is_nan() || fell {
                     return Err(RunError::StepTooSmall { dt, by: by() });
                 }
-                if dt * MOST_STEPS <= self.end {
+                if dt * MAX_STEPS <= self.end {
                     return Err(RunError::TooManySteps { dt, by: by(), end: self.end });
                 }
                 factor * dt

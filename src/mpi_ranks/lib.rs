@@ -1,4 +1,4 @@
-//! The ranks of a run as processes of MPI. The engine knows their trait `Ranks` alone.
+//! The ranks of a run as MPI processes. The engine knows only their trait `Ranks`.
 #![cfg(feature = "mpi")]
 
 use std::cell::RefCell;
@@ -11,8 +11,8 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, CommunicatorCollectives};
 use thiserror::Error;
 
-/// Largest number of bytes in one exchange: MPI counts in i32.
-const MOST: usize = 1 << 30;
+/// Maximum number of bytes in one exchange: MPI counts in i32.
+const MAX_BYTES: usize = 1 << 30;
 
 /// MPI cannot be used.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
@@ -28,7 +28,7 @@ pub enum StartError {
 /// The processes that `mpirun` has started.
 pub struct MpiRanks {
     world: SimpleCommunicator,
-    /// The part of this rank on its way: MPI wants it beside the place where all are put together.
+    /// Send buffer: MPI requires it to be separate from the receive buffer.
     own: RefCell<Vec<u8>>,
     /// Ends MPI when the run is over.
     _universe: Universe,
@@ -48,7 +48,7 @@ impl MpiRanks {
         Ok(Self { world: universe.world(), own: RefCell::default(), _universe: universe })
     }
 
-    /// One exchange of fewer than [`MOST`] bytes.
+    /// One exchange of fewer than [`MAX_BYTES`] bytes.
     fn share_at_once(&self, bytes: &mut [u8], cuts: &[usize]) {
         let (start, end) = (cuts[self.rank()], cuts[self.rank() + 1]);
         let mut own = self.own.borrow_mut();
@@ -68,7 +68,7 @@ fn addressed(bytes: &[u8]) -> &[u8] {
     if bytes.is_empty() { &[0] } else { bytes }
 }
 
-/// A number of bytes as MPI counts; those of one exchange are below [`MOST`].
+/// A number of bytes as MPI counts; those of one exchange are below [`MAX_BYTES`].
 fn count(bytes: usize) -> i32 {
     i32::try_from(bytes).unwrap_or(i32::MAX)
 }
@@ -83,12 +83,12 @@ impl Ranks for MpiRanks {
     }
 
     fn share(&self, bytes: &mut [u8], cuts: &[usize]) {
-        if bytes.len() < MOST {
+        if bytes.len() < MAX_BYTES {
             return self.share_at_once(bytes, cuts);
         }
-        // In rounds, in each of which every rank gives the next piece of its part.
+        // In rounds, in each of which every rank sends the next piece of its part.
         let size = self.size();
-        let piece = MOST / size;
+        let piece = MAX_BYTES / size;
         let longest = cuts.windows(2).map(|pair| pair[1] - pair[0]).max().unwrap_or(0);
         let mut round = Vec::new();
         for first in (0..longest).step_by(piece) {

@@ -1,4 +1,4 @@
-//! What a case is, and the one list of all cases.
+//! Validation cases, and the one list of all cases.
 
 use anyhow::Result;
 use meshless_engine::plugin::Registry;
@@ -8,7 +8,7 @@ use crate::{contact, coupled, exact, fluids, solids};
 
 /// A case with a known answer.
 pub struct Case {
-    /// Its identity, such as `S11`.
+    /// Identifier, such as `S11`.
     pub id: &'static str,
     /// Title, in one line.
     pub title: &'static str,
@@ -20,8 +20,8 @@ pub struct Case {
     pub run: fn(&Registry, usize) -> Result<Vec<Check>>,
 }
 
-/// Hands the list of all cases, `<id> <group>::<file>::<constant>;`, to the macro of that name: [`CASES`] and
-/// the tests are made of it.
+/// Passes the list of all cases, `<id> <group>::<file>::<constant>;`, to the macro of that name, which
+/// generates [`CASES`] and the tests.
 #[macro_export]
 macro_rules! for_each_case {
     ($then:ident) => {

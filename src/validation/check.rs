@@ -1,13 +1,13 @@
-//! A figure of a case beside its reference.
+//! A measured value of a case and its reference.
 
-/// How near a measured value has to be.
+/// Tolerance of a measured value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Tolerance {
-    /// The relative error is at most this, either way.
+    /// Maximum magnitude of the relative error.
     Relative(f64),
-    /// The relative error is between these two.
+    /// Lower and upper bound of the relative error.
     Between(f64, f64),
-    /// The error is at most this, either way, in the unit of the value.
+    /// Maximum magnitude of the error, in the unit of the value.
     Absolute(f64),
     /// The value is below the reference.
     Below,
@@ -24,29 +24,29 @@ pub struct Check {
     pub measured: f64,
     /// Reference value; the bound of [`Tolerance::Below`] and [`Tolerance::Above`].
     pub reference: f64,
-    /// How near they have to be.
+    /// Tolerance.
     pub tolerance: Tolerance,
     /// Unit of both; `1` for a pure number.
     pub unit: &'static str,
-    /// Where the reference comes from.
+    /// Source of the reference.
     pub source: &'static str,
-    /// Whether its error has to fall from one resolution to the next.
+    /// Whether the error must decrease from one resolution to the next.
     pub converges: bool,
-    /// How fast it has to fall, where a case says so.
+    /// Required rate of convergence, if the case states one.
     pub rate: Option<ConvergenceRate>,
 }
 
-/// How fast an error has to fall with the spacing, and where it has to lead.
+/// Required convergence of an error with the spacing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConvergenceRate {
-    /// Factor by which it falls when the spacing is halved, at least.
+    /// Minimum factor by which the error decreases when the spacing is halved.
     pub per_halving: f64,
-    /// Largest relative error at a spacing of zero, as the line through the two finest runs has it.
+    /// Maximum relative error extrapolated to zero spacing, by the line through the two finest runs.
     pub extrapolated: f64,
 }
 
 impl ConvergenceRate {
-    /// Whether errors at ascending resolutions fall so fast.
+    /// Whether the errors at ascending resolutions converge so fast.
     pub fn is_met(self, errors: &[(usize, f64)]) -> bool {
         errors.windows(2).all(|pair| {
             let halvings = (pair[1].0 as f64 / pair[0].0 as f64).log2();
@@ -55,7 +55,7 @@ impl ConvergenceRate {
     }
 }
 
-/// The error at a spacing of zero, from the line through those of the two finest runs.
+/// The error extrapolated to zero spacing, by the line through the two finest runs.
 pub fn at_no_spacing(errors: &[(usize, f64)]) -> Option<f64> {
     let [.., (coarse, first), (fine, second)] = errors else { return None };
     let (coarse, fine) = (*coarse as f64, *fine as f64);
@@ -63,7 +63,7 @@ pub fn at_no_spacing(errors: &[(usize, f64)]) -> Option<f64> {
 }
 
 impl Check {
-    /// A value that has to be near its reference.
+    /// A value with a reference and a tolerance.
     pub fn new(
         name: impl Into<String>,
         measured: f64,
@@ -75,29 +75,29 @@ impl Check {
         Self { name: name.into(), measured, reference, tolerance, unit, source, converges: false, rate: None }
     }
 
-    /// A pure number that has to stay below a bound.
+    /// A pure number that must be below a bound.
     pub fn below(name: impl Into<String>, measured: f64, bound: f64, source: &'static str) -> Self {
         Self::new(name, measured, bound, Tolerance::Below, "1", source)
     }
 
-    /// A pure number that has to be above a bound.
+    /// A pure number that must be above a bound.
     pub fn above(name: impl Into<String>, measured: f64, bound: f64, source: &'static str) -> Self {
         Self::new(name, measured, bound, Tolerance::Above, "1", source)
     }
 
-    /// The same check, whose error also has to fall with resolution.
+    /// The same check, whose error must also decrease with resolution.
     #[must_use]
     pub fn converging(self) -> Self {
         Self { converges: true, ..self }
     }
 
-    /// The same check, whose error has to fall that fast.
+    /// The same check, with a required rate of convergence.
     #[must_use]
     pub fn converging_at(self, rate: ConvergenceRate) -> Self {
         Self { converges: true, rate: Some(rate), ..self }
     }
 
-    /// The same check with a relative tolerance that many times as wide: for a formulation that is compared
+    /// The same check with the relative tolerance multiplied by a factor: for a formulation that is compared
     /// with another.
     #[must_use]
     pub fn widened(self, factor: f64) -> Self {
@@ -115,7 +115,7 @@ impl Check {
         if self.reference == 0.0 { difference } else { difference / self.reference.abs() }
     }
 
-    /// Whether the value is near enough. A value that is not a number never is.
+    /// Whether the error is within the tolerance. NaN never is.
     pub fn passes(&self) -> bool {
         match self.tolerance {
             Tolerance::Relative(most) => self.error().abs() <= most,

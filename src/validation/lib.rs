@@ -1,8 +1,8 @@
 //! Validation cases: scenes with known answers, run through the real engine and compared.
 //!
-//! A case is a scene in `tests/validation/<case>/`, whose resolution and few parameters are set the way
-//! `--set` sets them, and one file here, which says what is measured and what it is compared with. `meshless
-//! validate` runs the cases and prints the table; the tests run each at its cheapest meaningful resolution.
+//! A case is a scene in `tests/validation/<case>/`, whose resolution and few parameters are set as by
+//! `--set`, and one file here, which defines the measured values and their references. `meshless validate`
+//! runs the cases and prints the table; the tests run each at its cheapest meaningful resolution.
 
 mod case;
 mod check;

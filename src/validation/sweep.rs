@@ -1,8 +1,8 @@
 //! The sweep: every plugin of fluids at its default on every shipped flow.
 //!
-//! Each plugin joins those that the scene gives its fluids, or takes the place of the one of its name. Looked
-//! at is what holds for every flow: the volume of the fluid, the signs of the accounts, and that nothing is
-//! inside of a wall.
+//! Each plugin is added to those that the scene gives its fluids, or replaces the one of its name. The checks
+//! hold for every flow: the volume of the fluid, the signs of the accounts, and that nothing is inside of a
+//! wall.
 
 use anyhow::{Context, Result};
 use meshless_engine::assembly;
@@ -16,7 +16,7 @@ use meshless_engine::simulation::Simulation;
 use crate::case::Case;
 use crate::check::Check;
 
-/// The whole sweep. It is no case of the list: it takes minutes, and runs where it is asked for by name.
+/// The whole sweep. It is not in the list of cases: it takes minutes, and runs only when requested by name.
 pub const CASE: Case = Case {
     id: "sweep",
     title: "every plugin at its default on every shipped flow, 2 000 steps",
@@ -44,10 +44,10 @@ flows!(
     "water_wheel"
 );
 
-/// Where the scenes are, and beside them the meshes that they name: from any folder.
+/// Folders of the scenes and the meshes that they name, for a program started in any folder.
 const SCENES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/scenes");
 
-/// Plugins of fluids, at their defaults where they have one for everything.
+/// Plugins of fluids, at their defaults if all parameters have one.
 const PLUGINS: &[&str] = &[
     "density_diffusion()",
     "particle_shifting()",
@@ -57,7 +57,7 @@ const PLUGINS: &[&str] = &[
     "local_damping(rate: 1.0)",
 ];
 
-/// Share of all energy that walls may give.
+/// Maximum fraction of all energy that walls may supply.
 const WALLS: f64 = 0.05;
 
 /// Names of the flows.
@@ -87,13 +87,12 @@ pub fn sweep_of(registry: &Registry, flow: &str, set: &[(&str, &str)], steps: u6
     Ok(checks)
 }
 
-/// What one of the flows, as it is shipped but for values set as `--set path=value` does, warns of within so
-/// many steps.
+/// The warnings of one of the flows within so many steps, with values set as `--set path=value` does.
 ///
 /// # Errors
 /// No such flow, a value that cannot be set, or a run that fails.
 pub fn warnings_of(registry: &Registry, flow: &str, set: &[(&str, &str)], steps: u64) -> Result<Vec<String>> {
-    // A program without a recorder would warn of that.
+    // A program without a recorder would warn of its absence.
     let (scene, source) = scene::parse(without(source_of(flow, set)?, "rerun_recorder")?)?;
     let mut simulation = assembly::build(&scene, &source, registry)?;
     simulation.run(|simulation| simulation.clock().step < steps)?;
@@ -122,22 +121,22 @@ fn run(registry: &Registry, flow: &str, source: Source, plugin: &str, steps: u64
     let [accounts, walls] = given(&simulation);
     Ok([
         Check::below(name("change of volume"), change(0), 0.01, "a liquid"),
-        Check::below(name("change of volume over room"), change(1), 0.01, "a liquid"),
+        Check::below(name("change of volume over occupied space"), change(1), 0.01, "a liquid"),
         Check::below(name("energy from accounts that take it"), accounts, 1e-3, "of all energy"),
         Check::below(name("energy from walls"), walls, WALLS, "of all energy"),
         Check::below(name("walls and bodies entered"), intrusions(&simulation), 0.5, "closed"),
     ])
 }
 
-/// The name in the text of a plugin.
+/// The name of a plugin, from its text.
 fn name_of(plugin: &str) -> &str {
     plugin.split('(').next().unwrap_or(plugin)
 }
 
-/// The scene with a plugin on all of its fluids, in the place of the one of its name.
+/// The scene with a plugin on all of its fluids, replacing the one of its name.
 fn with_plugin(source: Source, plugin: &str, registry: &Registry) -> Result<Source> {
     let name = name_of(plugin);
-    // What all bodies have of that name would have none left to act on.
+    // A plugin of that name for all bodies would have no body left to act on.
     let (scene, mut source) = scene::parse(without(source, name)?)?;
     let flows =
         |body: &&BodyDescription| registry.body_kind(body.formulation.name()) == Some(BodyKind::Fluid);
@@ -152,7 +151,7 @@ fn with_plugin(source: Source, plugin: &str, registry: &Registry) -> Result<Sour
     Ok(source)
 }
 
-/// The scene without the plugin of that name among those of all bodies.
+/// The scene without the plugin of that name for all bodies.
 fn without(source: Source, name: &str) -> Result<Source> {
     let (scene, source) = scene::parse(source)?;
     let others = scene.plugins.iter().filter(|item| item.name() != name);
@@ -164,8 +163,8 @@ fn without(source: Source, name: &str) -> Result<Source> {
     Ok(set.map_err(|problem| source.error(vec![problem]))?)
 }
 
-/// Volume of the fluids by their density, m3, and the volume that particles away from surfaces have over the
-/// room that they take.
+/// Volume of the fluids by their density, m3, and the volume of particles away from surfaces over the space
+/// that they occupy.
 fn volumes(simulation: &Simulation) -> [f64; 2] {
     let cloud = simulation.resources().get::<FlowCloud>();
     let volume: f64 = (0..cloud.fluid).map(|i| cloud.volume(i)).sum();
@@ -184,8 +183,8 @@ fn volumes(simulation: &Simulation) -> [f64; 2] {
     [volume, filled / count]
 }
 
-/// Largest energy that an account of dissipation has given, and that walls have, over the largest account.
-/// Walls push water on at the start and take as much when it arrives: of them a share is allowed.
+/// Maximum energy supplied by an account of dissipation, and by walls, over the largest account. Walls push
+/// water on at the start and absorb as much when it arrives: a fraction is allowed for them.
 fn given(simulation: &Simulation) -> [f64; 2] {
     let ledger = simulation.ledger();
     let total = |name: &str| ledger.total_named(name);
@@ -200,7 +199,7 @@ fn given(simulation: &Simulation) -> [f64; 2] {
     [of(false), of(true)]
 }
 
-/// Number of bodies and walls that the run has found particles inside of.
+/// Number of bodies and walls with particles inside of them.
 fn intrusions(simulation: &Simulation) -> f64 {
     simulation.warnings().iter().filter(|text| text.contains(" is inside of ")).count() as f64
 }

@@ -8,7 +8,7 @@ use meshless_engine::plugin::Registry;
 use meshless_engine::scene::{self, SceneError, Source};
 use meshless_engine::simulation::Simulation;
 
-/// A scene text whose values are set before it is built.
+/// A scene text with overrides, set before it is built.
 #[derive(Clone)]
 pub struct Template(Source);
 

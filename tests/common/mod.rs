@@ -172,7 +172,7 @@ pub fn failing() -> Source {
             "gone",
             2.0,
             "failure(criterion: MaximumPrincipalStrain(limit: 0.05), growth: CrackSpeed(), then: Removed),
-             remove_fragments(particles: 12, least_volume: 0.8)",
+             remove_fragments(particles: 12, minimum_volume_ratio: 0.8)",
         ),
     ];
     let text = format!(
@@ -273,7 +273,7 @@ pub fn eulerian(source: &Source) -> Source {
     Source::new(name, text.replace("form: Ganzenmueller2015", "form: Stiffness"))
 }
 
-/// The scene with every spacing divided by the least whole number that gives it more than 4096 particles:
+/// The scene with every spacing divided by the smallest whole number that gives it more than 4096 particles:
 /// several tasks of 1 024 rows, so that loops over rows are really divided between threads.
 pub fn of_many_tasks(source: &Source) -> Source {
     let finer = (1..).map(|factor| refined(source, f64::from(factor)));

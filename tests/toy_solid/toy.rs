@@ -256,7 +256,7 @@ fn force(step: &Step<'_>, phase: PhaseId, gravity: DVec3) -> Result<(), StepErro
     let mass = view.read::<Mass>()?;
     for (i, force) in view.write::<Force>()?.iter_mut().enumerate() {
         let (own, volume) = (&packed.stresses[i], packed.points[i].volume);
-        let traction = |j: usize, x, u| own.times(x, u) + packed.stresses[j].times(x, u);
+        let traction = |j: usize, x, u| own.apply(x, u) + packed.stresses[j].apply(x, u);
         let sum: DVec3 = packed.pairs(i).map(|(j, share, x, u)| share * traction(j, x, u)).sum();
         force.0 = sum * volume + if volume > 0.0 { gravity * mass[i].0 } else { DVec3::ZERO };
     }

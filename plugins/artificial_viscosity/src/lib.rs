@@ -50,7 +50,7 @@ impl Plugin for ArtificialViscosity {
             let Some(sound_speed) = sim.body(id).material.sound_speed() else { continue };
             let parting = sim.body(id).kind == BodyKind::Fluid;
             if parting {
-                self.warn_where_it_drowns(id, sim);
+                self.warn_of_low_reynolds(id, sim);
             }
             let material = &sim.body(id).material;
             let term = ViscousTerm {
@@ -67,17 +67,17 @@ impl Plugin for ArtificialViscosity {
 }
 
 /// Reynolds number of the artificial viscosity below which it dominates the flow.
-const LEAST_REYNOLDS: f64 = 50.0;
+const MIN_REYNOLDS: f64 = 50.0;
 
 impl ArtificialViscosity {
     /// Warns where the viscosity is too large for a flow of a tenth of the speed of sound, which this is
     /// chosen for, over the smallest extent of the body: `nu = alpha h c_0 / 8`, in three dimensions over 10.
-    fn warn_where_it_drowns(self, id: BodyId, sim: &mut SimBuilder<'_>) {
+    fn warn_of_low_reynolds(self, id: BodyId, sim: &mut SimBuilder<'_>) {
         let body = sim.body(id);
         let (share, h, axes) = if sim.dimension() == Dimension::Two { (8.0, 1.5, 2) } else { (10.0, 1.3, 3) };
         let length = body.bounds.extent().to_array()[..axes].iter().copied().fold(f64::INFINITY, f64::min);
         let reynolds = 0.1 * length * share / (self.alpha * h * body.spacing);
-        if reynolds < LEAST_REYNOLDS {
+        if reynolds < MIN_REYNOLDS {
             let text = format!(
                 "`artificial_viscosity(alpha: {})` dominates the flow of `{}`: beside it a flow with a tenth of the speed of sound has a \
                  Reynolds number of {reynolds:.0} over the {length:.3} m of the body; `alpha: 0.02, beta: 0.0` is usual for fluids",

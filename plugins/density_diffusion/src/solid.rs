@@ -9,7 +9,7 @@ use meshless_engine::bytemuck;
 use meshless_engine::correction::MomentMatrix;
 use meshless_engine::formulations::eulerian::DilatationRate;
 use meshless_engine::glam::DVec3;
-use meshless_engine::parallel::{Largest, for_each_block};
+use meshless_engine::parallel::{Maximum, for_each_block};
 use meshless_engine::plugin::{SetupError, SimBuilder};
 use meshless_engine::schedule::{Mode, Run, Stage, Step, StepError, System};
 use meshless_engine::solids::{PACKED_SOLID, PresentPair, PresentPairs, PresentVolumes, fill_rows};
@@ -74,7 +74,7 @@ struct Diffusion {
     /// Density over that of the start, and its gradient, 1/m, of all rows of the phase of a body.
     densities: Vec<f64>,
     gradients: Vec<DVec3>,
-    sums: Vec<Largest>,
+    sums: Vec<Maximum>,
 }
 
 impl Run for Diffusion {
@@ -118,7 +118,7 @@ impl Diffusion {
                 out.0 = strength * rate;
                 strength * weight
             });
-            Largest::of(rates)
+            Maximum::of(rates)
         });
         drop((out, solid));
         if fastest.0 > 0.0 {

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// Failure strain eps_f = (d1 + d2 exp(d3 s*)) (1 + d4 ln max(rate / reference_rate, 1)) (1 + d5 T*), not
-/// below `least_strain`; s* = mean stress / von Mises stress, T* = (T - reference_temperature) /
+/// below `minimum_strain`; s* = mean stress / von Mises stress, T* = (T - reference_temperature) /
 /// (melt_temperature - reference_temperature) from 0 to 1.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -26,25 +26,25 @@ pub struct JohnsonCookFailure {
     #[serde(default = "one")]
     pub reference_rate: f64,
     /// Temperature at and below which temperature has no influence, K.
-    #[serde(default = "room")]
+    #[serde(default = "room_temperature")]
     pub reference_temperature: f64,
     /// Temperature at and above which T* is 1, K. Needed with `d5`.
     #[serde(default)]
     pub melt_temperature: Option<f64>,
-    /// Smallest failure strain: fits of the constants turn negative at high triaxiality.
-    #[serde(default = "usual_least_strain")]
-    pub least_strain: f64,
+    /// Minimum failure strain: fits of the constants turn negative at high triaxiality.
+    #[serde(default = "default_minimum_strain")]
+    pub minimum_strain: f64,
 }
 
 fn one() -> f64 {
     1.0
 }
 
-fn room() -> f64 {
+fn room_temperature() -> f64 {
     293.15
 }
 
-fn usual_least_strain() -> f64 {
+fn default_minimum_strain() -> f64 {
     1e-3
 }
 
@@ -68,7 +68,7 @@ impl JohnsonCookFailure {
         }
         ParameterError::require_positive("criterion.reference_rate", self.reference_rate)?;
         ParameterError::require_positive("criterion.reference_temperature", self.reference_temperature)?;
-        ParameterError::require_positive("criterion.least_strain", self.least_strain)?;
+        ParameterError::require_positive("criterion.minimum_strain", self.minimum_strain)?;
         let melts = self.melt_temperature.is_some_and(|melt| melt > self.reference_temperature);
         if self.d5 == 0.0 || melts {
             return Ok(());
@@ -89,7 +89,7 @@ impl JohnsonCookFailure {
             let above = temperature - self.reference_temperature;
             (above / (melt - self.reference_temperature)).clamp(0.0, 1.0)
         });
-        // `max` also turns what is not a number into the least strain: the particle fails, the run goes on.
-        (shape * fast * (1.0 + self.d5 * hot)).max(self.least_strain)
+        // `max` also turns what is not a number into the minimum strain: the particle fails, the run goes on.
+        (shape * fast * (1.0 + self.d5 * hot)).max(self.minimum_strain)
     }
 }

@@ -18,7 +18,7 @@ use meshless_engine::parallel::BLOCK;
 use meshless_engine::world::{ColumnSet, Damage, PlasticStrain, Temperature};
 
 use crate::criterion::{CriterionInput, WatchedCriterion};
-use crate::softening::{Then, at_volume, cauchy, cofactor};
+use crate::softening::{AfterFailure, at_volume, cauchy, cofactor};
 use crate::{DamagedDeformation, DamagedEnergy, FailedStress, FailedVolume, FailureIndex, FractureEnergy};
 
 pub(crate) struct FailingLaw {
@@ -26,7 +26,7 @@ pub(crate) struct FailingLaw {
     inner: Arc<dyn SolidLaw>,
     /// Growth of the cube root of damage where the criterion is met, 1/s.
     growth: f64,
-    then: Then,
+    then: AfterFailure,
 }
 
 /// The columns of the law, block by block.
@@ -55,7 +55,7 @@ impl<'a> LawColumns<'a> {
 }
 
 impl FailingLaw {
-    pub fn new(watch: WatchedCriterion, inner: Arc<dyn SolidLaw>, growth: f64, then: Then) -> Self {
+    pub fn new(watch: WatchedCriterion, inner: Arc<dyn SolidLaw>, growth: f64, then: AfterFailure) -> Self {
         Self { watch, inner, growth, then }
     }
 

@@ -13,7 +13,7 @@ mod tests;
 
 pub use criterion::Criterion;
 pub use johnson_cook::JohnsonCookFailure;
-pub use softening::Then;
+pub use softening::AfterFailure;
 
 use criterion::WatchedCriterion;
 use law::FailingLaw;
@@ -58,7 +58,7 @@ pub struct Failure {
     pub growth: Growth,
     /// Behaviour of a particle whose damage has reached 1.
     #[serde(default)]
-    pub then: Then,
+    pub then: AfterFailure,
 }
 
 /// Growth of damage where the criterion is met.
@@ -119,9 +119,9 @@ impl Plugin for Failure {
             })?;
         }
         match self.then {
-            Then::Removed => sim.add_removal_rule(removal::Failed { bodies: bodies.clone() }),
-            Then::RemovedAtSurface => exposure::add(sim, &bodies),
-            Then::NoTension | Then::NoDeviator => {}
+            AfterFailure::Removed => sim.add_removal_rule(removal::Failed { bodies: bodies.clone() }),
+            AfterFailure::RemovedAtSurface => exposure::add(sim, &bodies),
+            AfterFailure::NoTension | AfterFailure::NoDeviator => {}
         }
         energy::add_system(sim, bodies);
         Ok(())

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// Behaviour of a particle whose damage has reached 1. While damage D grows, it reduces the part of the
 /// stress that is to be lost by the share D.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
-pub enum Then {
+pub enum AfterFailure {
     /// It resists compression of its volume alone, like a granular material, until it is so long and thin
     /// that its areas are three times as large: it then carries no stress. While damage grows, it reduces
     /// positive principal stresses.
@@ -25,7 +25,7 @@ pub enum Then {
     RemovedAtSurface,
 }
 
-impl Then {
+impl AfterFailure {
     /// The Cauchy stress, Pa, that damage 0 < D < 1 leaves.
     pub(crate) fn soften(self, stress: &Sym3, damage: f64) -> Sym3 {
         let left = 1.0 - damage;
@@ -97,7 +97,7 @@ mod tests {
     #[test]
     fn tension_is_softened_and_compression_is_not() {
         let stress = Sym3::from_diagonal(DVec3::new(4.0, -6.0, 2.0));
-        for then in [Then::NoTension, Then::Removed] {
+        for then in [AfterFailure::NoTension, AfterFailure::Removed] {
             let left = then.soften(&stress, 0.25);
             assert!(
                 (left.to_matrix() - DMat3::from_diagonal(DVec3::new(3.0, -6.0, 1.5)))
@@ -106,29 +106,36 @@ mod tests {
             assert_eq!((then.borne(5.0), then.borne(-5.0)), (0.0, -5.0));
         }
         // Mean 0: the deviator is all.
-        let left = Then::NoDeviator.soften(&stress, 0.25);
+        let left = AfterFailure::NoDeviator.soften(&stress, 0.25);
         assert!((left.to_matrix() - (stress * 0.75).to_matrix()).abs_diff_eq(DMat3::ZERO, 1e-14));
-        assert_eq!(Then::NoDeviator.borne(5.0), 5.0);
+        assert_eq!(AfterFailure::NoDeviator.borne(5.0), 5.0);
     }
 
     #[test]
     fn a_liquid_is_torn_by_volume_by_shear_and_inside_out() {
-        let torn = |then: Then, x, y, z| {
+        let torn = |then: AfterFailure, x, y, z| {
             let f = DMat3::from_diagonal(DVec3::new(x, y, z));
             then.is_torn(f.determinant(), &cofactor(&f))
         };
-        assert!(!torn(Then::NoDeviator, 1.0, 1.0, 1.9) && torn(Then::NoDeviator, 1.0, 1.0, 2.1));
-        assert!(torn(Then::NoDeviator, 1.0, 1.0, -1.0) && !torn(Then::NoDeviator, 0.5, 0.5, 0.5));
+        assert!(
+            !torn(AfterFailure::NoDeviator, 1.0, 1.0, 1.9) && torn(AfterFailure::NoDeviator, 1.0, 1.0, 2.1)
+        );
+        assert!(
+            torn(AfterFailure::NoDeviator, 1.0, 1.0, -1.0) && !torn(AfterFailure::NoDeviator, 0.5, 0.5, 0.5)
+        );
         // Areas of 4, 4 and 1/16 times have a root of the mean square of 3.3, those of 2, 2 and 1/4 one of
         // 1.6.
-        assert!(torn(Then::NoDeviator, 0.25, 0.25, 16.0) && !torn(Then::NoDeviator, 0.5, 0.5, 4.0));
+        assert!(
+            torn(AfterFailure::NoDeviator, 0.25, 0.25, 16.0)
+                && !torn(AfterFailure::NoDeviator, 0.5, 0.5, 4.0)
+        );
     }
 
     #[test]
     fn rubble_is_torn_where_it_would_press_at_a_distance() {
         let torn = |x, y, z| {
             let f = DMat3::from_diagonal(DVec3::new(x, y, z));
-            Then::NoTension.is_torn(f.determinant(), &cofactor(&f))
+            AfterFailure::NoTension.is_torn(f.determinant(), &cofactor(&f))
         };
         // Loose, pressed from one side, inside out: it stays.
         assert!(!torn(1.0, 1.0, 9.0) && !torn(0.2, 1.0, 1.0) && !torn(1.0, 1.0, -1.0));

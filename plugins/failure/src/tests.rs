@@ -10,7 +10,7 @@ use meshless_engine::world::{ColumnSet, Damage};
 use crate::criterion::{Criterion, WatchedCriterion};
 use crate::johnson_cook::JohnsonCookFailure;
 use crate::law::FailingLaw;
-use crate::softening::Then;
+use crate::softening::AfterFailure;
 use crate::{FailureIndex, FractureEnergy};
 
 const BULK: f64 = 2e9;
@@ -45,7 +45,7 @@ fn rubber() -> Material {
 }
 
 impl Specimen {
-    fn new(material: Material, criterion: Criterion, growth: f64, then: Then) -> Self {
+    fn new(material: Material, criterion: Criterion, growth: f64, then: AfterFailure) -> Self {
         let inner = inner(material);
         let watch = WatchedCriterion::new(criterion, &*inner, "body").unwrap();
         let law = FailingLaw::new(watch, inner, growth, then);
@@ -121,7 +121,7 @@ const STRAIN: Criterion = Criterion::MaximumPrincipalStrain { limit: 0.05 };
 
 #[test]
 fn damage_grows_as_the_cube_of_time_from_the_limit_on() {
-    let mut specimen = Specimen::new(rubber(), STRAIN, 1e5, Then::NoTension);
+    let mut specimen = Specimen::new(rubber(), STRAIN, 1e5, AfterFailure::NoTension);
     for k in 1..=20 {
         specimen.to(stretched((0.0499 * f64::from(k) / 20.0).exp(), 1.0), 1e-7);
     }
@@ -135,7 +135,7 @@ fn damage_grows_as_the_cube_of_time_from_the_limit_on() {
     }
     assert_eq!((specimen.modulus[0], specimen.stress[0]), (0.0, DMat3::ZERO));
     // Below the limit it would have stayed.
-    let mut other = Specimen::new(rubber(), STRAIN, 1e5, Then::NoTension);
+    let mut other = Specimen::new(rubber(), STRAIN, 1e5, AfterFailure::NoTension);
     for stretch in [0.06f64, 0.04, 0.04, 0.04] {
         other.to(stretched(stretch.exp(), 1.0), 1e-6);
     }
@@ -146,7 +146,7 @@ fn damage_grows_as_the_cube_of_time_from_the_limit_on() {
 fn compression_breaks_nothing() {
     let stress = Criterion::MaximumPrincipalStress { limit: 1e6 };
     for criterion in [STRAIN, stress] {
-        let mut specimen = Specimen::new(rubber(), criterion, f64::INFINITY, Then::NoTension);
+        let mut specimen = Specimen::new(rubber(), criterion, f64::INFINITY, AfterFailure::NoTension);
         let squeezed = DMat3::from_diagonal(glam::DVec3::splat(0.7));
         specimen.to(squeezed, 1e-6);
         assert_eq!(specimen.damage(), 0.0);
@@ -155,7 +155,7 @@ fn compression_breaks_nothing() {
 
 #[test]
 fn what_has_failed_bears_what_the_scene_says() {
-    let failed = |then: Then| {
+    let failed = |then: AfterFailure| {
         let mut specimen = Specimen::new(rubber(), STRAIN, f64::INFINITY, then);
         specimen.to(stretched(1.1, 1.0), 1e-6);
         assert_eq!(specimen.damage(), 1.0);
@@ -164,10 +164,10 @@ fn what_has_failed_bears_what_the_scene_says() {
     // Vidal's law: the Cauchy pressure is -K (J - 1), whatever the shape.
     let sheared = |j: f64| DMat3::from_cols_array(&[1.3, 0.0, 0.0, 0.6, j / 1.3, 0.0, 0.0, 0.0, 1.0]);
     for (then, j, mean) in [
-        (Then::NoTension, 0.9, -0.1 * BULK),
-        (Then::NoTension, 1.2, 0.0),
-        (Then::NoDeviator, 0.9, -0.1 * BULK),
-        (Then::NoDeviator, 1.2, 0.2 * BULK),
+        (AfterFailure::NoTension, 0.9, -0.1 * BULK),
+        (AfterFailure::NoTension, 1.2, 0.0),
+        (AfterFailure::NoDeviator, 0.9, -0.1 * BULK),
+        (AfterFailure::NoDeviator, 1.2, 0.2 * BULK),
     ] {
         let mut specimen = failed(then);
         specimen.to(sheared(j), 1e-6);
@@ -180,7 +180,7 @@ fn what_has_failed_bears_what_the_scene_says() {
         assert_eq!(specimen.modulus[0], 0.0);
     }
     // Turned inside out it is still a number, and pushes back.
-    let mut specimen = failed(Then::NoTension);
+    let mut specimen = failed(AfterFailure::NoTension);
     specimen.to(stretched(-0.4, 1.0), 1e-6);
     assert!(specimen.stress[0].is_finite() && specimen.stress[0].x_axis.x < 0.0);
     assert!(specimen.energy[0].is_finite());
@@ -212,7 +212,7 @@ fn all_work_is_stored_or_set_free() {
     };
     let materials: [fn() -> Material; 2] = [rubber, neo];
     for material in materials {
-        for then in [Then::NoTension, Then::NoDeviator, Then::Removed] {
+        for then in [AfterFailure::NoTension, AfterFailure::NoDeviator, AfterFailure::Removed] {
             for growth in [f64::INFINITY, 4.0] {
                 let mut specimen = Specimen::new(material(), STRAIN, growth, then);
                 let steps = 20_000;
@@ -237,8 +237,12 @@ fn all_work_is_stored_or_set_free() {
 
 #[test]
 fn a_law_that_does_not_fail_is_left_as_it_is() {
-    let mut specimen =
-        Specimen::new(rubber(), Criterion::MaximumPrincipalStrain { limit: 9.0 }, 1.0, Then::NoTension);
+    let mut specimen = Specimen::new(
+        rubber(),
+        Criterion::MaximumPrincipalStrain { limit: 9.0 },
+        1.0,
+        AfterFailure::NoTension,
+    );
     let bare = inner(rubber());
     for k in 1..50 {
         let f = path(f64::from(k) / 50.0);
@@ -272,7 +276,7 @@ fn failure_strains_are_those_of_johnson_and_cook() {
         reference_rate: 1.0,
         reference_temperature: 292.0,
         melt_temperature: Some(925.0),
-        least_strain: 1e-3,
+        minimum_strain: 1e-3,
     };
     let acrylic = JohnsonCookFailure {
         d1: -1.751,
@@ -283,7 +287,7 @@ fn failure_strains_are_those_of_johnson_and_cook() {
         reference_rate: 1e-3,
         reference_temperature: 213.0,
         melt_temperature: Some(398.0),
-        least_strain: 1e-3,
+        minimum_strain: 1e-3,
     };
     let file = include_str!("../tests/johnson_cook_failure_strain.csv");
     let mut seen = 0;

@@ -37,7 +37,7 @@ pub(crate) struct Conductor {
 
 /// Step over that at which the explicit update of temperatures becomes unstable.
 const SAFETY: f64 = 0.9;
-/// Least determinant of a moment matrix that shows a shape: below it the neighbourhood counts as round.
+/// Minimum determinant of a moment matrix that shows a shape: below it the neighbourhood counts as round.
 const SINGULAR: f64 = 0.02;
 
 /// Adds the system that conducts at the end of each step of the bodies.

@@ -46,7 +46,7 @@ pub enum DifferenceForm {
 }
 
 /// Largest coefficient that the step is made for.
-const LARGEST: f64 = 5.0;
+const MAX_ETA: f64 = 5.0;
 
 impl Plugin for HessianStabilization {
     const NAME: &'static str = "hessian_stabilization";
@@ -55,8 +55,8 @@ impl Plugin for HessianStabilization {
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         let bodies = sim.scope_offering(Offer::HessianDifferences)?;
         ParameterError::require_not_negative("eta", self.eta)?;
-        if self.eta > LARGEST {
-            let message = format!("`eta` must be at most {LARGEST}, found {}", self.eta);
+        if self.eta > MAX_ETA {
+            let message = format!("`eta` must be at most {MAX_ETA}, found {}", self.eta);
             return Err(SetupError::parameter("eta", message, "0.3 is usual, 1.5 is strong"));
         }
         if self.eta == 0.0 {

@@ -54,7 +54,7 @@ impl FoldedTerm for MeasureFit {
 }
 
 /// A pair form that does not act on bonds with a failed particle.
-pub struct OffCracks<T>(pub T);
+pub struct OnIntactBonds<T>(pub T);
 
 /// The pair, in which a neighbour across a crack is none: it has no volume.
 #[inline(always)]
@@ -64,7 +64,7 @@ fn off_cracks<A: Arithmetic>(pair: &Pair<A>, damage_i: Number<A>, damage_j: Numb
     whole
 }
 
-impl PairTerm for OffCracks<Ganzenmueller2015<HourglassGradient>> {
+impl PairTerm for OnIntactBonds<Ganzenmueller2015<HourglassGradient>> {
     type ReadI = (HourglassGradient, HourglassModulus, Damage);
     type ReadJ = (HourglassGradient, HourglassModulus, Damage);
 
@@ -83,7 +83,7 @@ impl PairTerm for OffCracks<Ganzenmueller2015<HourglassGradient>> {
     }
 }
 
-impl<F: Column<Value = DMat3>> PairTerm for OffCracks<Viscous<F>> {
+impl<F: Column<Value = DMat3>> PairTerm for OnIntactBonds<Viscous<F>> {
     type ReadI = (F, Damage);
     type ReadJ = (F, Damage);
 
@@ -102,7 +102,7 @@ impl<F: Column<Value = DMat3>> PairTerm for OffCracks<Viscous<F>> {
     }
 }
 
-impl PairTerm for OffCracks<Stiffness> {
+impl PairTerm for OnIntactBonds<Stiffness> {
     type ReadI = (DeformationGradient, HourglassModulus, Damage);
     type ReadJ = (DeformationGradient, HourglassModulus, Damage);
 

@@ -5,7 +5,7 @@ use meshless_engine::plugin::{SetupError, SimBuilder};
 use meshless_engine::solids::{FoldedTerm, FoldedTermOfBodies, PairControl};
 use meshless_engine::world::{BodyId, BodySet, DeformationGradient, HourglassModulus};
 
-use crate::cracks::{OffCracks, can_fail};
+use crate::cracks::{OnIntactBonds, can_fail};
 use crate::resistance::{AfterYield, Resistance};
 use crate::stiffness::Stiffness;
 use crate::viscous::Viscous;
@@ -37,7 +37,7 @@ pub fn add(elastic: Elastic, zeta: f64, id: BodyId, sim: &mut SimBuilder<'_>) ->
         if has_energy {
             PairControl { xi, across: across * xi }.add(bodies.clone(), sim);
         } else if fails {
-            sim.add_pair_term(bodies.clone(), WORK, OffCracks(term));
+            sim.add_pair_term(bodies.clone(), WORK, OnIntactBonds(term));
         } else {
             sim.add_pair_term(bodies.clone(), WORK, term);
         }
@@ -45,7 +45,7 @@ pub fn add(elastic: Elastic, zeta: f64, id: BodyId, sim: &mut SimBuilder<'_>) ->
     if zeta > 0.0 {
         let term = Viscous::<DeformationGradient>::of(zeta, id, sim)?;
         if fails {
-            sim.add_pair_term(bodies, VISCOSITY, OffCracks(term));
+            sim.add_pair_term(bodies, VISCOSITY, OnIntactBonds(term));
         } else {
             sim.add_pair_term(bodies, VISCOSITY, term);
         }

@@ -14,7 +14,7 @@ mod viscous;
 
 use std::marker::PhantomData;
 
-use cracks::{OffCracks, add_off_cracks, can_fail};
+use cracks::{OnIntactBonds, add_off_cracks, can_fail};
 use eulerian::Elastic;
 use ganzenmueller_2015::Ganzenmueller2015;
 use meshless_engine::materials::ParameterError;
@@ -335,7 +335,7 @@ impl HourglassControl {
             let density = sim.body(id).material.density;
             if can_fail(sim, id)? {
                 let term = Ganzenmueller2015::<HourglassGradient> { alpha, density, measure: PhantomData };
-                add_off_cracks(sim, id, WORK, OffCracks(term));
+                add_off_cracks(sim, id, WORK, OnIntactBonds(term));
             } else {
                 let term = Ganzenmueller2015::<DeformationGradient> { alpha, density, measure: PhantomData };
                 sim.add_pair_term(BodySet::new([id]), WORK, term);
@@ -352,7 +352,7 @@ fn add_viscous(zeta: f64, bodies: &BodySet, sim: &mut SimBuilder<'_>) -> Result<
     for id in bodies.iter() {
         if can_fail(sim, id)? {
             let term = Viscous::<HourglassGradient>::of(zeta, id, sim)?;
-            add_off_cracks(sim, id, VISCOSITY, OffCracks(term));
+            add_off_cracks(sim, id, VISCOSITY, OnIntactBonds(term));
         } else {
             let term = Viscous::<DeformationGradient>::of(zeta, id, sim)?;
             sim.add_pair_term(BodySet::new([id]), VISCOSITY, term);

@@ -5,7 +5,7 @@ use meshless_engine::plugin::Registry;
 use meshless_engine::scene::{Source, parse};
 use meshless_engine::world::{BodyId, PlasticStrain};
 
-/// The plastic strain of every particle over their mean, least and greatest, in a bar eight spacings thick
+/// The plastic strain of every particle over their mean, minimum and maximum, in a bar eight spacings thick
 /// that is drawn along an axis by 4 %.
 fn spread(sizes: (f64, f64), (low, high): (&str, &str), velocity: &dyn Fn(&str) -> String) -> (f64, f64) {
     let axis = if sizes.0 > sizes.1 { "x" } else { "y" };

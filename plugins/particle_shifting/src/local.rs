@@ -16,7 +16,7 @@ pub struct Local {
     /// Smallest eigenvalue lambda of the moment matrix `sum_j V_j w_ij x_ij (x) x_ij`: one inside, about a
     /// half at a free surface.
     pub lambda: f64,
-    /// Volume of the particles in a neighbourhood over the room that they have, less one: `sum_j V_j W_ij -
+    /// Volume of the particles in a neighbourhood over the space that they have, less one: `sum_j V_j W_ij -
     /// 1`, with the particle itself.
     pub excess: f64,
     /// First moment `S = sum_j V_j (1 + 0.2 (W_ij / W(dp))^4) w_ij x_ij`, 1/m: it points to where particles

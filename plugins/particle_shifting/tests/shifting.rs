@@ -17,8 +17,8 @@ fn simulation(plugins: &str, lattice: &str, velocity: &str) -> Simulation {
     periodic_flow::simulation(particle_shifting::register, "Mixed", plugins, (lattice, velocity))
 }
 
-/// Least distance of two particles over the spacing, across the sides of the box as well.
-fn least_distance(sim: &Simulation) -> f64 {
+/// Minimum distance of two particles over the spacing, across the sides of the box as well.
+fn min_distance(sim: &Simulation) -> f64 {
     let x = column::<Position>(sim);
     let distance = |a: DVec3, b: DVec3| {
         let d = b - a;
@@ -52,7 +52,7 @@ fn vortices_leave_the_particles_even() {
         let mut sim = simulation(plugins, "Square", VORTICES);
         sim.run(|sim| sim.clock().time < 0.4).expect("a run");
         assert!(sim.ledger().relative_error().abs() < 0.01, "{}", sim.ledger().relative_error());
-        least_distance(&sim)
+        min_distance(&sim)
     };
     let (with, without) = (run("particle_shifting()"), run(""));
     assert!(with > 0.65 && with > without + 0.05, "{with} {without}");

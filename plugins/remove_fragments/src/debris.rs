@@ -9,11 +9,17 @@ use meshless_engine::world::{BodyId, BodySet, Column, DeformationGradient, Remov
 use crate::IsDebris;
 
 /// Adds what marks and removes the debris of some bodies.
-pub(crate) fn add(sim: &mut SimBuilder<'_>, bodies: Vec<BodyId>, least_volume: f64, particles: usize) {
+pub(crate) fn add(
+    sim: &mut SimBuilder<'_>,
+    bodies: Vec<BodyId>,
+    minimum_volume_ratio: f64,
+    particles: usize,
+) {
     let set = BodySet::new(bodies.iter().copied());
     sim.add_column_to::<IsDebris>(&set);
     sim.add_removal_rule(Debris { bodies: bodies.clone() });
-    let marking = Marking { bodies, least_volume, pieces: Pieces { particles, found: Vec::new() } };
+    let marking =
+        Marking { bodies, minimum_volume_ratio, pieces: Fragments { particles, found: Vec::new() } };
     sim.add_system(
         System::new(Stage::PostStep, "debris", marking)
             .on_bodies(set)
@@ -28,13 +34,13 @@ pub(crate) fn add(sim: &mut SimBuilder<'_>, bodies: Vec<BodyId>, least_volume: f
 /// Marks debris at the end of a step, with the lists of that step, so that a resumed run finds the same.
 struct Marking {
     bodies: Vec<BodyId>,
-    least_volume: f64,
-    pieces: Pieces,
+    minimum_volume_ratio: f64,
+    pieces: Fragments,
 }
 
 impl Run for Marking {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
-        let Self { bodies, least_volume, pieces } = self;
+        let Self { bodies, minimum_volume_ratio, pieces } = self;
         for &body in bodies.iter().filter(|&&body| step.part.is_due(step.world, body)) {
             let (view, rows) = step.world.body_view(body);
             let Some(solid) = step.resources.solid(step.world.body(body).phase) else { continue };
@@ -42,7 +48,8 @@ impl Run for Marking {
             let mut debris = view.write::<IsDebris>()?;
             for row in rows {
                 let is_debris = removed[row] == Removed::NO
-                    && (deformation[row].0.determinant() < *least_volume || pieces.is_small(&*solid, row));
+                    && (deformation[row].0.determinant() < *minimum_volume_ratio
+                        || pieces.is_small(&*solid, row));
                 debris[row] = IsDebris(u32::from(is_debris));
             }
         }
@@ -51,14 +58,14 @@ impl Run for Marking {
 }
 
 /// Finds pieces of few particles.
-struct Pieces {
+struct Fragments {
     /// Pieces of fewer particles are small.
     particles: usize,
     /// Rows found in the piece of a particle; at most `particles` rows.
     found: Vec<usize>,
 }
 
-impl Pieces {
+impl Fragments {
     /// Whether a particle belongs to a piece of fewer particles. A particle with so many neighbours that it
     /// cannot ends the search at once, so that an intact body costs one pass over its rows.
     fn is_small(&mut self, solid: &dyn SolidPhase, row: usize) -> bool {

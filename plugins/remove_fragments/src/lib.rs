@@ -28,8 +28,8 @@ column! {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct RemoveFragments {
-    /// Volume over that of the start below which a particle is crushed; zero: none is.
-    pub least_volume: f64,
+    /// Volume over the initial volume below which a particle is removed as crushed; zero: none is.
+    pub minimum_volume_ratio: f64,
     /// Pieces of fewer particles are removed; 1: none is. A piece is a set of particles connected by kernels.
     /// Default: 5 in the plane and 7 in space, a particle with its nearest neighbours.
     pub particles: Option<usize>,
@@ -37,32 +37,32 @@ pub struct RemoveFragments {
 
 impl Default for RemoveFragments {
     fn default() -> Self {
-        Self { least_volume: 0.2, particles: None }
+        Self { minimum_volume_ratio: 0.2, particles: None }
     }
 }
 
 /// Largest number of particles of a piece that is looked for.
-const MOST: usize = 100;
+const MAX_PARTICLES: usize = 100;
 
 impl Plugin for RemoveFragments {
     const NAME: &'static str = "remove_fragments";
     const REFERENCE: &'static str = "";
 
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
-        let volume = self.least_volume;
+        let volume = self.minimum_volume_ratio;
         if !(0.0..=0.9).contains(&volume) {
             return Err(SetupError::parameter(
-                "least_volume",
-                format!("`least_volume` must be from 0 to 0.9, found {volume}"),
-                "it is a volume over that of the start; particles below it are removed",
+                "minimum_volume_ratio",
+                format!("`minimum_volume_ratio` must be from 0 to 0.9, found {volume}"),
+                "it is a volume over the initial volume; particles below it are removed",
             ));
         }
         let of_dimension = if sim.dimension() == Dimension::Two { 5 } else { 7 };
         let particles = self.particles.unwrap_or(of_dimension);
-        if !(1..=MOST).contains(&particles) {
+        if !(1..=MAX_PARTICLES).contains(&particles) {
             return Err(SetupError::parameter(
                 "particles",
-                format!("`particles` must be from 1 to {MOST}, found {particles}"),
+                format!("`particles` must be from 1 to {MAX_PARTICLES}, found {particles}"),
                 "pieces of fewer particles are removed; 1 removes crushed particles only",
             ));
         }

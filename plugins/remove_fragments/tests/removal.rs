@@ -82,6 +82,6 @@ fn parameters_out_of_range_are_refused() {
         let square = "Box(min: (0, 0), max: (0.4, 0.4))";
         flight("Eulerian()", square, plugin, r#""0", "0""#, 0.1).err().unwrap_or_default()
     };
-    assert!(error("remove_fragments(least_volume: -0.1)").contains("from 0 to 0.9"));
+    assert!(error("remove_fragments(minimum_volume_ratio: -0.1)").contains("from 0 to 0.9"));
     assert!(error("remove_fragments(particles: 0)").contains("from 1 to 100"));
 }

@@ -5,7 +5,7 @@ use meshless_engine::scene::Dimension;
 /// A box around particles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
-    /// Least coordinates, m.
+    /// Minimum coordinates, m.
     pub min: [f64; 3],
     /// Largest coordinates, m.
     pub max: [f64; 3],
@@ -52,7 +52,7 @@ impl Bounds {
 
 /// Place and direction of the viewer's eye.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Eye {
+pub struct Viewpoint {
     /// Position, m.
     pub position: [f64; 3],
     /// The point in the middle of the picture, m.
@@ -73,7 +73,7 @@ pub const OPENING: f64 = 0.5206;
 /// Room around the bodies.
 const MARGIN: f64 = 1.12;
 
-impl Eye {
+impl Viewpoint {
     /// An eye that has the box in view: from the front in two dimensions, else from the front, right and
     /// above. `up` is a unit vector along an axis, `aspect` the width over the height of the picture.
     pub fn on(bounds: &Bounds, dimension: Dimension, up: [f64; 3], aspect: f64) -> Self {
@@ -126,7 +126,7 @@ mod tests {
     fn a_plane_body_is_seen_from_the_front_with_y_up() {
         let mut bounds = Bounds::EMPTY;
         bounds.extend(&[[0.0, 0.0, 0.0], [2.0, 1.0, 0.0], [f32::NAN, 0.0, 0.0]], 0.0);
-        let eye = Eye::on(&bounds, Dimension::Two, [0.0, 1.0, 0.0], ASPECT);
+        let eye = Viewpoint::on(&bounds, Dimension::Two, [0.0, 1.0, 0.0], ASPECT);
         assert_eq!(eye.target, [1.0, 0.5, 0.0]);
         assert_eq!((eye.position[0], eye.position[1]), (1.0, 0.5));
         let half_width_in_view = eye.position[2] * OPENING * ASPECT;
@@ -156,7 +156,7 @@ mod tests {
             let bounds = Bounds { min: [-1.0, 0.0, 3.0], max: [4.0, 0.5, 4.0] };
             let mut up = [0.0; 3];
             up[axis] = sign;
-            let eye = Eye::on(&bounds, Dimension::Three, up, ASPECT);
+            let eye = Viewpoint::on(&bounds, Dimension::Three, up, ASPECT);
             let back: [f64; 3] = std::array::from_fn(|k| eye.position[k] - eye.target[k]);
             let back = unit(back);
             let right = unit(cross(up, back));

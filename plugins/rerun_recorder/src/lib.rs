@@ -24,7 +24,7 @@ mod surface;
 
 pub use colormap::Colormap;
 #[cfg(feature = "rerun")]
-pub use picture::{Look, draw};
+pub use picture::{DrawStyle, draw};
 pub use plugin::{RerunRecorder, register};
 #[cfg(feature = "rerun")]
 pub use reading::{ReadError, RecordedBody, RecordedFrame, read_frame};

@@ -15,7 +15,7 @@ use view::View;
 
 /// Style of a drawn frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Look {
+pub struct DrawStyle {
     /// Width \[pixels\].
     pub width: usize,
     /// Height \[pixels\].
@@ -29,7 +29,7 @@ pub struct Look {
 /// # Errors
 ///
 /// The picture cannot be encoded.
-pub fn draw(frame: &RecordedFrame, look: Look) -> Result<Vec<u8>, png::EncodingError> {
+pub fn draw(frame: &RecordedFrame, look: DrawStyle) -> Result<Vec<u8>, png::EncodingError> {
     let mut canvas = Canvas::new(look.width, look.height);
     let area = annotate::Area::of(&canvas, frame);
     // Edges are smoothed by drawing the particles at twice the size.

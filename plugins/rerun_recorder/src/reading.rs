@@ -160,7 +160,7 @@ impl RecordingReader {
     fn take(&mut self, chunk: &Chunk) {
         let entity = chunk.entity_path();
         if entity.is_root() {
-            self.take_up(chunk);
+            self.add_chunk(chunk);
         } else if *entity == paths::title() {
             text(chunk, &mut self.frame.title);
         } else if *entity == paths::legend_part("title") {
@@ -176,7 +176,7 @@ impl RecordingReader {
         }
     }
 
-    fn take_up(&mut self, chunk: &Chunk) {
+    fn add_chunk(&mut self, chunk: &Chunk) {
         let component = ViewCoordinates::descriptor_xyz().component;
         let axes = chunk.iter_slices::<[u8; 3]>(component).next();
         if let Some(axes) = axes.and_then(|axes| axes.first()) {

@@ -6,7 +6,7 @@ use meshless_engine::record::{
     BodyFrame, BodyInfo, Existing, FieldValues, Frame, NamedUnit, Recorder, RunInfo,
 };
 use meshless_engine::scene::Dimension;
-use rerun_recorder::{Colormap, Look, ReadError, RerunFile, RerunRecorder, draw, read_frame};
+use rerun_recorder::{Colormap, DrawStyle, ReadError, RerunFile, RerunRecorder, draw, read_frame};
 use tempfile::TempDir;
 
 /// Four frames of a lone grey particle and a pair of coloured ones, of which the right one rises by 1 m a
@@ -135,7 +135,7 @@ fn particles_are_where_they_are_and_as_large_as_they_are() {
     let path = recording(folder.path(), 0.0);
     let frame = read_frame(&path, None).expect("a frame");
     for smooth in [false, true] {
-        let picture = draw(&frame, Look { width: 400, height: 300, smooth }).expect("a picture");
+        let picture = draw(&frame, DrawStyle { width: 400, height: 300, smooth }).expect("a picture");
         let (width, pixels) = decode(&picture);
         assert_eq!((width, pixels.len()), (400, 400 * 300));
         let (left, count) = middle_of(&pixels, width, Colormap::Viridis.color(0.3));
@@ -161,7 +161,7 @@ fn what_is_nearer_hides_what_is_behind() {
     let colour = [250, 0, 0];
     let reds = |frame: &_| {
         let (_, pixels) =
-            decode(&draw(frame, Look { width: 1200, height: 900, smooth: false }).expect("a picture"));
+            decode(&draw(frame, DrawStyle { width: 1200, height: 900, smooth: false }).expect("a picture"));
         pixels.iter().filter(|[r, g, b]| *r > 60 && *g < 10 && *b < 10).count()
     };
     frame.bodies[0].colors = vec![colour, [0, 0, 0]];

@@ -11,7 +11,7 @@ const NEAR: f64 = 0.1;
 impl Sym3 {
     /// Product with a symmetric matrix of the same principal directions, which is symmetric.
     #[inline(always)]
-    pub fn times_coaxial(&self, b: &Self) -> Self {
+    pub fn mul_coaxial(&self, b: &Self) -> Self {
         Self {
             xx: self.xx * b.xx + self.xy * b.xy + self.xz * b.xz,
             yy: self.xy * b.xy + self.yy * b.yy + self.yz * b.yz,
@@ -24,7 +24,7 @@ impl Sym3 {
 
     /// `A + s I`.
     #[inline(always)]
-    pub fn plus_diagonal(&self, s: f64) -> Self {
+    pub fn add_diagonal(&self, s: f64) -> Self {
         Self { xx: self.xx + s, yy: self.yy + s, zz: self.zz + s, ..*self }
     }
 
@@ -34,13 +34,13 @@ impl Sym3 {
     /// Near the identity it is computed as artanh(Z) with Z = (A - I)(A + I)^-1, to 4e-12 of |Z|.
     #[inline(always)]
     pub fn half_log(&self) -> Self {
-        let x = self.plus_diagonal(-1.0);
+        let x = self.add_diagonal(-1.0);
         if x.double_dot(&x) <= NEAR * NEAR {
-            let z = x.times_coaxial(&self.plus_diagonal(1.0).inverse());
-            let y = z.times_coaxial(&z);
-            let inner = (y * (1.0 / 7.0)).plus_diagonal(1.0 / 5.0);
-            let outer = inner.times_coaxial(&y).plus_diagonal(1.0 / 3.0);
-            z + outer.times_coaxial(&y).times_coaxial(&z)
+            let z = x.mul_coaxial(&self.add_diagonal(1.0).inverse());
+            let y = z.mul_coaxial(&z);
+            let inner = (y * (1.0 / 7.0)).add_diagonal(1.0 / 5.0);
+            let outer = inner.mul_coaxial(&y).add_diagonal(1.0 / 3.0);
+            z + outer.mul_coaxial(&y).mul_coaxial(&z)
         } else {
             half_log_by_eigenvalues(self)
         }
@@ -50,9 +50,9 @@ impl Sym3 {
     #[inline(always)]
     pub fn exp(&self) -> Self {
         if self.double_dot(self) <= NEAR * NEAR {
-            let mut sum = (*self * (1.0 / 7.0)).plus_diagonal(1.0);
+            let mut sum = (*self * (1.0 / 7.0)).add_diagonal(1.0);
             for k in [6.0, 5.0, 4.0, 3.0, 2.0, 1.0] {
-                sum = (sum.times_coaxial(self) * (1.0 / k)).plus_diagonal(1.0);
+                sum = (sum.mul_coaxial(self) * (1.0 / k)).add_diagonal(1.0);
             }
             sum
         } else {

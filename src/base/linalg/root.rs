@@ -3,7 +3,7 @@
 use super::Sym3;
 
 /// Maximum number of iterations; it is only reached on NaN.
-const MOST: usize = 20;
+const MAX_ITERATIONS: usize = 20;
 /// Squared relative change of the result, below which the next iterate is exact to round-off, as convergence
 /// is quadratic.
 const SMALL: f64 = 1e-18;
@@ -15,7 +15,7 @@ impl Sym3 {
     /// the eigenvalues is a thousand.
     pub fn inverse_root(&self) -> Self {
         let (mut root, mut inverse) = (*self, Self::IDENTITY);
-        for _ in 0..MOST {
+        for _ in 0..MAX_ITERATIONS {
             let next = (inverse + root.inverse()) * 0.5;
             root = (root + inverse.inverse()) * 0.5;
             let change = next - inverse;

@@ -167,12 +167,12 @@ fn whole(x: f64) -> i64 {
 /// Numbers of buckets along the axes: the numbers of cells, or fewer, so that their product stays
 /// proportional to the number of particles.
 pub(super) fn fold_into_buckets(axes: &mut [CellAxis; 3], particles: usize) {
-    let mut room = (4 * particles + 64).min(u32::MAX as usize - 2) as i64;
+    let mut budget = (4 * particles + 64).min(u32::MAX as usize - 2) as i64;
     let mut order = [0, 1, 2];
     order.sort_by_key(|&a| axes[a].cells);
     let mut folded = [1; 3];
     for (done, &a) in order.iter().enumerate() {
-        let share = (room as f64).powf(1.0 / (3 - done) as f64) as i64;
+        let share = (budget as f64).powf(1.0 / (3 - done) as f64) as i64;
         let mut buckets = axes[a].cells.min(share.max(1));
         if buckets < axes[a].cells {
             // Without a common divisor, a diagonal line of cells visits every bucket before it repeats one.
@@ -182,7 +182,7 @@ pub(super) fn fold_into_buckets(axes: &mut [CellAxis; 3], particles: usize) {
             folded[done] = buckets;
         }
         axes[a].buckets = buckets;
-        room /= buckets;
+        budget /= buckets;
     }
 }
 
@@ -206,8 +206,8 @@ mod tests {
             for divisor in 2..=buckets[0].max(buckets[1]).max(buckets[2]) {
                 assert!(buckets.iter().filter(|&b| b % divisor == 0).count() <= 1, "{buckets:?}");
             }
-            let room = 4 * particles as i64 + 64;
-            assert!(product <= room && product > room / 3, "{buckets:?} for {particles}");
+            let budget = 4 * particles as i64 + 64;
+            assert!(product <= budget && product > budget / 3, "{buckets:?} for {particles}");
         }
     }
 }

@@ -43,7 +43,7 @@ pub(super) struct CellRun {
 pub(super) struct Ranges {
     pub found: Vec<CellRun>,
     /// Number of particles, the padding to multiples of four included.
-    pub room: usize,
+    pub padded_len: usize,
     lists: [Vec<i64>; 3],
 }
 
@@ -185,14 +185,14 @@ impl Ranges {
     #[inline(always)]
     fn clear(&mut self) {
         self.found.clear();
-        self.room = 0;
+        self.padded_len = 0;
     }
 
     #[inline(always)]
     fn add(&mut self, first: u32, end: u32, holds_own: bool) {
         if first < end {
             self.found.push(CellRun { first, end, holds_own });
-            self.room += (end - first) as usize + PADDING + 1;
+            self.padded_len += (end - first) as usize + PADDING + 1;
         }
     }
 }

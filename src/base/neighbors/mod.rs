@@ -32,7 +32,7 @@ pub use cloud::{Cloud, SupportRadii};
 pub use cloud::{PointBounds, bounds};
 pub use error::NeighborError;
 pub use list::NeighborList;
-pub use parting::{Parted, Parting};
+pub use parting::{RelativeBounds, RelativeDisplacements};
 pub use periodic::Periodic;
 pub use periodic::SHIFT;
 pub use search::{Boxes, FirstOfCloud, NeighborSearch};

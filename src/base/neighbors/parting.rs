@@ -17,7 +17,7 @@ const CELLS_OF_TASK: usize = 64;
 
 /// The cells, and the reference positions of their particles.
 #[derive(Debug, Default)]
-pub struct Parting {
+pub struct RelativeDisplacements {
     grid: CellBlock,
     length: f64,
     cells: Buckets,
@@ -29,7 +29,7 @@ pub struct Parting {
 
 /// Bounds of the relative displacement of particles, m.
 #[derive(Clone, Copy, Debug)]
-pub struct Parted {
+pub struct RelativeBounds {
     /// Maximum for particles that were nearer than the length of a cell.
     pub near: f64,
     /// Maximum for any two particles.
@@ -64,7 +64,7 @@ impl DisplacementBox {
     }
 }
 
-impl Parting {
+impl RelativeDisplacements {
     /// Stores the positions of the particles as the reference, in cells of at least the given length, m.
     pub fn note(&mut self, positions: &[DVec3], length: f64) {
         let sorted = sort_into_cells(&mut self.cells, positions, length, &Periodic::NONE);
@@ -81,9 +81,9 @@ impl Parting {
 
     /// Bound of the relative displacement of the particles since the last [`Parting::note`]; infinite where
     /// the number of particles has changed.
-    pub fn parted(&mut self, positions: &[DVec3]) -> Parted {
+    pub fn parted(&mut self, positions: &[DVec3]) -> RelativeBounds {
         if self.then.len() != positions.len() {
-            return Parted { near: f64::INFINITY, all: f64::INFINITY };
+            return RelativeBounds { near: f64::INFINITY, all: f64::INFINITY };
         }
         let Self { cells, then, boxes, .. } = self;
         boxes.resize(cells.count(), DisplacementBox::NONE);
@@ -96,7 +96,7 @@ impl Parting {
         let all = boxes.iter().fold(DisplacementBox::NONE, |all, own| all.with(*own)).diagonal();
         self.grid.join_beside(&mut self.boxes, &mut self.window, &DisplacementBox::with);
         let near = self.boxes.iter().map(|own| own.diagonal()).fold(0.0, f64::max);
-        Parted { near, all }
+        RelativeBounds { near, all }
     }
 }
 
@@ -115,7 +115,7 @@ mod tests {
     #[test]
     fn no_two_particles_have_moved_farther_than_it_says() {
         let then = places();
-        let mut parting = Parting::default();
+        let mut parting = RelativeDisplacements::default();
         parting.note(&then, 0.4);
         let mut is_tight = 0;
         for n in 1..40 {
@@ -124,7 +124,7 @@ mod tests {
                 .iter()
                 .map(|x| *x + DVec3::new(70.0 + t * x.y, t * (2.0 * x.x).sin(), t * t * x.z))
                 .collect();
-            let Parted { near, all } = parting.parted(&now);
+            let RelativeBounds { near, all } = parting.parted(&now);
             let (mut of_near, mut of_all) = (0.0_f64, 0.0_f64);
             for i in 0..then.len() {
                 for j in 0..i {
@@ -144,7 +144,7 @@ mod tests {
     #[test]
     fn what_flies_as_a_whole_stays_together_and_what_is_no_number_does_not() {
         let then = places();
-        let mut parting = Parting::default();
+        let mut parting = RelativeDisplacements::default();
         assert!(parting.parted(&then).near == f64::INFINITY);
         parting.note(&then, 0.4);
         let mut now: Vec<DVec3> = then.iter().map(|x| *x + DVec3::new(70.0, -3.0, 0.1)).collect();

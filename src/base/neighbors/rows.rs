@@ -166,8 +166,8 @@ impl<const D: usize, const PERIODIC: bool, const UNIFORM: bool, const BOXES: boo
             let half = if BOXES { halves[i] } else { DVec3::ZERO };
             let place = SearchBox { center: x_i, half, support: support_i };
             grid.around(x_i, if BOXES { radius + half.length() } else { radius }, ranges);
-            if found.len() < used + ranges.room {
-                found.resize((used + ranges.room) * 3 / 2, 0);
+            if found.len() < used + ranges.padded_len {
+                found.resize((used + ranges.padded_len) * 3 / 2, 0);
             }
             let found = found.as_mut_slice();
             for range in &ranges.found {
@@ -269,24 +269,24 @@ impl<'a, const D: usize, const PERIODIC: bool, const UNIFORM: bool, const BOXES:
         let (x_i, half) = (place.center.to_array(), place.half.to_array());
         let mut square = Lanes4::ZERO;
         for axis in 0..D {
-            let mut x = a.minus(Lanes4(candidates.coordinates[axis][k]), Lanes4::splat(x_i[axis]));
+            let mut x = a.sub(Lanes4(candidates.coordinates[axis][k]), Lanes4::splat(x_i[axis]));
             if PERIODIC {
                 let shift = Lanes4::splat(SHIFT);
-                let turns = a.minus(a.scale_add(self.inverse[axis], x, shift), shift);
+                let turns = a.sub(a.scale_add(self.inverse[axis], x, shift), shift);
                 x = a.scale_add(-self.length[axis], turns, x);
             }
             if BOXES {
-                let distance = a.larger(x, a.scale(-1.0, x));
-                x = a.max_zero(a.minus(distance, Lanes4::splat(half[axis])));
+                let distance = a.max(x, a.scale(-1.0, x));
+                x = a.max_zero(a.sub(distance, Lanes4::splat(half[axis])));
             }
-            square = a.times_add(x, x, square);
+            square = a.mul_add(x, x, square);
         }
         let limit = if UNIFORM {
             Lanes4::splat(self.square)
         } else {
-            let sum = a.plus(Lanes4(candidates.supports[k]), Lanes4::splat(place.support));
+            let sum = a.add(Lanes4(candidates.supports[k]), Lanes4::splat(place.support));
             let radius = a.scale_add(0.5, sum, Lanes4::splat(self.skin));
-            a.times(radius, radius)
+            a.mul(radius, radius)
         };
         a.below(square, limit)
     }

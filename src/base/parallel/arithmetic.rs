@@ -21,22 +21,22 @@ pub trait Arithmetic: Copy + Send + Sync {
     fn sum(self, a: Self::Lanes) -> f64;
 
     /// `a + b`, lane by lane.
-    fn plus(self, a: Self::Lanes, b: Self::Lanes) -> Self::Lanes;
+    fn add(self, a: Self::Lanes, b: Self::Lanes) -> Self::Lanes;
 
     /// `a - b`, lane by lane.
-    fn minus(self, a: Self::Lanes, b: Self::Lanes) -> Self::Lanes;
+    fn sub(self, a: Self::Lanes, b: Self::Lanes) -> Self::Lanes;
 
     /// `a b`, lane by lane.
-    fn times(self, a: Self::Lanes, b: Self::Lanes) -> Self::Lanes;
+    fn mul(self, a: Self::Lanes, b: Self::Lanes) -> Self::Lanes;
 
     /// `a / b`, lane by lane.
-    fn over(self, a: Self::Lanes, b: Self::Lanes) -> Self::Lanes;
+    fn div(self, a: Self::Lanes, b: Self::Lanes) -> Self::Lanes;
 
     /// The minimum, lane by lane; `b` where one operand is NaN.
-    fn smaller(self, a: Self::Lanes, b: Self::Lanes) -> Self::Lanes;
+    fn min(self, a: Self::Lanes, b: Self::Lanes) -> Self::Lanes;
 
     /// The maximum, lane by lane; `b` where one operand is NaN.
-    fn larger(self, a: Self::Lanes, b: Self::Lanes) -> Self::Lanes;
+    fn max(self, a: Self::Lanes, b: Self::Lanes) -> Self::Lanes;
 
     /// `c` in lanes where `a < b`, zero in the others.
     fn where_below(self, a: Self::Lanes, b: Self::Lanes, c: Self::Lanes) -> Self::Lanes;
@@ -45,7 +45,7 @@ pub trait Arithmetic: Copy + Send + Sync {
     fn below(self, a: Self::Lanes, b: Self::Lanes) -> usize;
 
     /// `a b + c`, lane by lane.
-    fn times_add(self, a: Self::Lanes, b: Self::Lanes, c: Self::Lanes) -> Self::Lanes;
+    fn mul_add(self, a: Self::Lanes, b: Self::Lanes, c: Self::Lanes) -> Self::Lanes;
 
     /// Square root, lane by lane.
     fn sqrt(self, a: Self::Lanes) -> Self::Lanes;
@@ -56,13 +56,13 @@ pub trait Arithmetic: Copy + Send + Sync {
     /// `s a`.
     #[inline(always)]
     fn scale(self, s: f64, a: Self::Lanes) -> Self::Lanes {
-        self.times(a, self.splat(s))
+        self.mul(a, self.splat(s))
     }
 
     /// `s a + c`.
     #[inline(always)]
     fn scale_add(self, s: f64, a: Self::Lanes, c: Self::Lanes) -> Self::Lanes {
-        self.times_add(a, self.splat(s), c)
+        self.mul_add(a, self.splat(s), c)
     }
 }
 
@@ -85,7 +85,7 @@ pub trait FourLanes: Arithmetic<Lanes = Lanes4> {
     fn eight(self) -> Self::Eight;
 
     /// `a b + c`.
-    fn mul_add(self, a: f64, b: f64, c: f64) -> f64;
+    fn scalar_mul_add(self, a: f64, b: f64, c: f64) -> f64;
 
     /// Prefetches a row into the cache before it is read or written; a row beyond the end has no effect.
     fn prefetch<T>(self, rows: &[T], row: usize);
@@ -100,7 +100,7 @@ pub trait FourLanes: Arithmetic<Lanes = Lanes4> {
     #[inline(always)]
     fn sums(self, of: [Lanes4; 4]) -> Lanes4 {
         let [a, b, c, d] = self.transpose(of);
-        self.plus(self.plus(a, b), self.plus(c, d))
+        self.add(self.add(a, b), self.add(c, d))
     }
 }
 

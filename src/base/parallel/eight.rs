@@ -63,32 +63,32 @@ mod portable {
         }
 
         #[inline(always)]
-        fn plus(self, a: Lanes8, b: Lanes8) -> Lanes8 {
+        fn add(self, a: Lanes8, b: Lanes8) -> Lanes8 {
             lane_by_lane!(K => a.0[K] + b.0[K])
         }
 
         #[inline(always)]
-        fn minus(self, a: Lanes8, b: Lanes8) -> Lanes8 {
+        fn sub(self, a: Lanes8, b: Lanes8) -> Lanes8 {
             lane_by_lane!(K => a.0[K] - b.0[K])
         }
 
         #[inline(always)]
-        fn times(self, a: Lanes8, b: Lanes8) -> Lanes8 {
+        fn mul(self, a: Lanes8, b: Lanes8) -> Lanes8 {
             lane_by_lane!(K => a.0[K] * b.0[K])
         }
 
         #[inline(always)]
-        fn over(self, a: Lanes8, b: Lanes8) -> Lanes8 {
+        fn div(self, a: Lanes8, b: Lanes8) -> Lanes8 {
             lane_by_lane!(K => a.0[K] / b.0[K])
         }
 
         #[inline(always)]
-        fn smaller(self, a: Lanes8, b: Lanes8) -> Lanes8 {
+        fn min(self, a: Lanes8, b: Lanes8) -> Lanes8 {
             lane_by_lane!(K => if a.0[K] < b.0[K] { a.0[K] } else { b.0[K] })
         }
 
         #[inline(always)]
-        fn larger(self, a: Lanes8, b: Lanes8) -> Lanes8 {
+        fn max(self, a: Lanes8, b: Lanes8) -> Lanes8 {
             lane_by_lane!(K => if a.0[K] > b.0[K] { a.0[K] } else { b.0[K] })
         }
 
@@ -107,7 +107,7 @@ mod portable {
         }
 
         #[inline(always)]
-        fn times_add(self, a: Lanes8, b: Lanes8, c: Lanes8) -> Lanes8 {
+        fn mul_add(self, a: Lanes8, b: Lanes8, c: Lanes8) -> Lanes8 {
             if cfg!(target_arch = "aarch64") {
                 lane_by_lane!(K => a.0[K].mul_add(b.0[K], c.0[K]))
             } else {
@@ -162,32 +162,32 @@ mod v3 {
         }
 
         #[inline(always)]
-        fn plus(self, a: Lanes8, b: Lanes8) -> Lanes8 {
+        fn add(self, a: Lanes8, b: Lanes8) -> Lanes8 {
             cast::<f32x8, Lanes8>(self.0.add_f32x8(cast(a), cast(b)))
         }
 
         #[inline(always)]
-        fn minus(self, a: Lanes8, b: Lanes8) -> Lanes8 {
+        fn sub(self, a: Lanes8, b: Lanes8) -> Lanes8 {
             cast::<f32x8, Lanes8>(self.0.sub_f32x8(cast(a), cast(b)))
         }
 
         #[inline(always)]
-        fn times(self, a: Lanes8, b: Lanes8) -> Lanes8 {
+        fn mul(self, a: Lanes8, b: Lanes8) -> Lanes8 {
             cast::<f32x8, Lanes8>(self.0.mul_f32x8(cast(a), cast(b)))
         }
 
         #[inline(always)]
-        fn over(self, a: Lanes8, b: Lanes8) -> Lanes8 {
+        fn div(self, a: Lanes8, b: Lanes8) -> Lanes8 {
             cast(self.0.avx._mm256_div_ps(cast(a), cast(b)))
         }
 
         #[inline(always)]
-        fn smaller(self, a: Lanes8, b: Lanes8) -> Lanes8 {
+        fn min(self, a: Lanes8, b: Lanes8) -> Lanes8 {
             cast(self.0.avx._mm256_min_ps(cast(a), cast(b)))
         }
 
         #[inline(always)]
-        fn larger(self, a: Lanes8, b: Lanes8) -> Lanes8 {
+        fn max(self, a: Lanes8, b: Lanes8) -> Lanes8 {
             cast(self.0.avx._mm256_max_ps(cast(a), cast(b)))
         }
 
@@ -203,7 +203,7 @@ mod v3 {
         }
 
         #[inline(always)]
-        fn times_add(self, a: Lanes8, b: Lanes8, c: Lanes8) -> Lanes8 {
+        fn mul_add(self, a: Lanes8, b: Lanes8, c: Lanes8) -> Lanes8 {
             cast::<f32x8, Lanes8>(self.0.mul_add_f32x8(cast(a), cast(b), cast(c)))
         }
 

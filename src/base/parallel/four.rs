@@ -18,27 +18,27 @@ impl Arithmetic for Portable {
     }
 
     #[inline(always)]
-    fn plus(self, a: Lanes4, b: Lanes4) -> Lanes4 {
+    fn add(self, a: Lanes4, b: Lanes4) -> Lanes4 {
         Lanes4([a.0[0] + b.0[0], a.0[1] + b.0[1], a.0[2] + b.0[2], a.0[3] + b.0[3]])
     }
 
     #[inline(always)]
-    fn minus(self, a: Lanes4, b: Lanes4) -> Lanes4 {
+    fn sub(self, a: Lanes4, b: Lanes4) -> Lanes4 {
         Lanes4([a.0[0] - b.0[0], a.0[1] - b.0[1], a.0[2] - b.0[2], a.0[3] - b.0[3]])
     }
 
     #[inline(always)]
-    fn times(self, a: Lanes4, b: Lanes4) -> Lanes4 {
+    fn mul(self, a: Lanes4, b: Lanes4) -> Lanes4 {
         Lanes4([a.0[0] * b.0[0], a.0[1] * b.0[1], a.0[2] * b.0[2], a.0[3] * b.0[3]])
     }
 
     #[inline(always)]
-    fn over(self, a: Lanes4, b: Lanes4) -> Lanes4 {
+    fn div(self, a: Lanes4, b: Lanes4) -> Lanes4 {
         Lanes4([a.0[0] / b.0[0], a.0[1] / b.0[1], a.0[2] / b.0[2], a.0[3] / b.0[3]])
     }
 
     #[inline(always)]
-    fn smaller(self, a: Lanes4, b: Lanes4) -> Lanes4 {
+    fn min(self, a: Lanes4, b: Lanes4) -> Lanes4 {
         Lanes4([
             if a.0[0] < b.0[0] { a.0[0] } else { b.0[0] },
             if a.0[1] < b.0[1] { a.0[1] } else { b.0[1] },
@@ -48,7 +48,7 @@ impl Arithmetic for Portable {
     }
 
     #[inline(always)]
-    fn larger(self, a: Lanes4, b: Lanes4) -> Lanes4 {
+    fn max(self, a: Lanes4, b: Lanes4) -> Lanes4 {
         Lanes4([
             if a.0[0] > b.0[0] { a.0[0] } else { b.0[0] },
             if a.0[1] > b.0[1] { a.0[1] } else { b.0[1] },
@@ -74,12 +74,12 @@ impl Arithmetic for Portable {
     }
 
     #[inline(always)]
-    fn times_add(self, a: Lanes4, b: Lanes4, c: Lanes4) -> Lanes4 {
+    fn mul_add(self, a: Lanes4, b: Lanes4, c: Lanes4) -> Lanes4 {
         Lanes4([
-            self.mul_add(a.0[0], b.0[0], c.0[0]),
-            self.mul_add(a.0[1], b.0[1], c.0[1]),
-            self.mul_add(a.0[2], b.0[2], c.0[2]),
-            self.mul_add(a.0[3], b.0[3], c.0[3]),
+            self.scalar_mul_add(a.0[0], b.0[0], c.0[0]),
+            self.scalar_mul_add(a.0[1], b.0[1], c.0[1]),
+            self.scalar_mul_add(a.0[2], b.0[2], c.0[2]),
+            self.scalar_mul_add(a.0[3], b.0[3], c.0[3]),
         ])
     }
 
@@ -103,7 +103,7 @@ impl FourLanes for Portable {
     }
 
     #[inline(always)]
-    fn mul_add(self, a: f64, b: f64, c: f64) -> f64 {
+    fn scalar_mul_add(self, a: f64, b: f64, c: f64) -> f64 {
         // A fused multiply-add would be a library call where the baseline instruction set lacks it.
         if cfg!(target_arch = "aarch64") { a.mul_add(b, c) } else { a * b + c }
     }
@@ -188,32 +188,32 @@ mod v3 {
         }
 
         #[inline(always)]
-        fn plus(self, a: Lanes4, b: Lanes4) -> Lanes4 {
+        fn add(self, a: Lanes4, b: Lanes4) -> Lanes4 {
             cast::<f64x4, Lanes4>(self.add_f64x4(cast(a), cast(b)))
         }
 
         #[inline(always)]
-        fn minus(self, a: Lanes4, b: Lanes4) -> Lanes4 {
+        fn sub(self, a: Lanes4, b: Lanes4) -> Lanes4 {
             cast::<f64x4, Lanes4>(self.sub_f64x4(cast(a), cast(b)))
         }
 
         #[inline(always)]
-        fn times(self, a: Lanes4, b: Lanes4) -> Lanes4 {
+        fn mul(self, a: Lanes4, b: Lanes4) -> Lanes4 {
             cast::<f64x4, Lanes4>(self.mul_f64x4(cast(a), cast(b)))
         }
 
         #[inline(always)]
-        fn over(self, a: Lanes4, b: Lanes4) -> Lanes4 {
+        fn div(self, a: Lanes4, b: Lanes4) -> Lanes4 {
             cast(self.avx._mm256_div_pd(cast(a), cast(b)))
         }
 
         #[inline(always)]
-        fn smaller(self, a: Lanes4, b: Lanes4) -> Lanes4 {
+        fn min(self, a: Lanes4, b: Lanes4) -> Lanes4 {
             cast(self.avx._mm256_min_pd(cast(a), cast(b)))
         }
 
         #[inline(always)]
-        fn larger(self, a: Lanes4, b: Lanes4) -> Lanes4 {
+        fn max(self, a: Lanes4, b: Lanes4) -> Lanes4 {
             cast(self.avx._mm256_max_pd(cast(a), cast(b)))
         }
 
@@ -229,7 +229,7 @@ mod v3 {
         }
 
         #[inline(always)]
-        fn times_add(self, a: Lanes4, b: Lanes4, c: Lanes4) -> Lanes4 {
+        fn mul_add(self, a: Lanes4, b: Lanes4, c: Lanes4) -> Lanes4 {
             cast::<f64x4, Lanes4>(self.mul_add_f64x4(cast(a), cast(b), cast(c)))
         }
 
@@ -254,7 +254,7 @@ mod v3 {
         }
 
         #[inline(always)]
-        fn mul_add(self, a: f64, b: f64, c: f64) -> f64 {
+        fn scalar_mul_add(self, a: f64, b: f64, c: f64) -> f64 {
             a.mul_add(b, c)
         }
 

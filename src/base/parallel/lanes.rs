@@ -48,12 +48,6 @@ impl Lanes4 {
         DVec3::new(self.0[0], self.0[1], self.0[2])
     }
 
-    /// Difference, for code outside of hot loops, which use [`Arithmetic`](super::Arithmetic).
-    #[inline(always)]
-    pub fn minus(self, o: Self) -> Self {
-        Self([self.0[0] - o.0[0], self.0[1] - o.0[1], self.0[2] - o.0[2], self.0[3] - o.0[3]])
-    }
-
     /// Scalar product of the first three lanes.
     #[inline(always)]
     pub fn dot3(self, o: Self) -> f64 {

@@ -8,7 +8,7 @@ mod dimension;
 mod eight;
 mod four;
 mod lanes;
-mod largest;
+mod maximum;
 mod number;
 mod own;
 mod path;
@@ -24,7 +24,7 @@ pub use blocks::{
 };
 pub use dimension::{PlaneOrSpace, run_hot_in};
 pub use lanes::{EIGHT, Lanes4, Lanes8};
-pub use largest::Largest;
+pub use maximum::Maximum;
 pub use number::Number;
 pub use own::{
     for_each_own_block, for_each_own_block_in_tasks, others_rows, own_part, own_rows, share_part,

@@ -66,13 +66,13 @@ impl<A: Arithmetic> Number<A> {
     /// The minimum of each number and `limit`.
     #[inline(always)]
     pub fn min(self, limit: f64) -> Self {
-        self.with(self.arithmetic.smaller(self.lanes, self.arithmetic.splat(limit)))
+        self.with(self.arithmetic.min(self.lanes, self.arithmetic.splat(limit)))
     }
 
     /// The maximum of each number and `limit`.
     #[inline(always)]
     pub fn max(self, limit: f64) -> Self {
-        self.with(self.arithmetic.larger(self.lanes, self.arithmetic.splat(limit)))
+        self.with(self.arithmetic.max(self.lanes, self.arithmetic.splat(limit)))
     }
 
     /// `value` where the number is below `limit`, zero elsewhere; it replaces a branch.
@@ -84,7 +84,7 @@ impl<A: Arithmetic> Number<A> {
     /// `self b + c`, rounded once where the processor has a fused multiply-add.
     #[inline(always)]
     pub fn mul_add(self, b: Self, c: Self) -> Self {
-        self.with(self.arithmetic.times_add(self.lanes, b.lanes, c.lanes))
+        self.with(self.arithmetic.mul_add(self.lanes, b.lanes, c.lanes))
     }
 
     #[inline(always)]
@@ -99,13 +99,13 @@ impl<A: Arithmetic> Number<A> {
 }
 
 macro_rules! operators {
-    ($($operator:ident $function:ident $operation:ident),+) => {$(
+    ($($operator:ident $function:ident),+) => {$(
         impl<A: Arithmetic> $operator for Number<A> {
             type Output = Self;
 
             #[inline(always)]
             fn $function(self, other: Self) -> Self {
-                self.with(self.arithmetic.$operation(self.lanes, other.lanes))
+                self.with(self.arithmetic.$function(self.lanes, other.lanes))
             }
         }
 
@@ -128,7 +128,7 @@ macro_rules! operators {
         }
     )+};
 }
-operators!(Add add plus, Sub sub minus, Mul mul times, Div div over);
+operators!(Add add, Sub sub, Mul mul, Div div);
 
 impl<A: Arithmetic> Neg for Number<A> {
     type Output = Self;

@@ -25,15 +25,15 @@ impl<A: Arithmetic> Arithmetic for Plane<A> {
     pass_on! {
         splat(value: f64) -> A::Lanes;
         sum(a: A::Lanes) -> f64;
-        plus(a: A::Lanes, b: A::Lanes) -> A::Lanes;
-        minus(a: A::Lanes, b: A::Lanes) -> A::Lanes;
-        times(a: A::Lanes, b: A::Lanes) -> A::Lanes;
-        over(a: A::Lanes, b: A::Lanes) -> A::Lanes;
-        smaller(a: A::Lanes, b: A::Lanes) -> A::Lanes;
-        larger(a: A::Lanes, b: A::Lanes) -> A::Lanes;
+        add(a: A::Lanes, b: A::Lanes) -> A::Lanes;
+        sub(a: A::Lanes, b: A::Lanes) -> A::Lanes;
+        mul(a: A::Lanes, b: A::Lanes) -> A::Lanes;
+        div(a: A::Lanes, b: A::Lanes) -> A::Lanes;
+        min(a: A::Lanes, b: A::Lanes) -> A::Lanes;
+        max(a: A::Lanes, b: A::Lanes) -> A::Lanes;
         where_below(a: A::Lanes, b: A::Lanes, c: A::Lanes) -> A::Lanes;
         below(a: A::Lanes, b: A::Lanes) -> usize;
-        times_add(a: A::Lanes, b: A::Lanes, c: A::Lanes) -> A::Lanes;
+        mul_add(a: A::Lanes, b: A::Lanes, c: A::Lanes) -> A::Lanes;
         sqrt(a: A::Lanes) -> A::Lanes;
         max_zero(a: A::Lanes) -> A::Lanes;
     }
@@ -53,7 +53,7 @@ impl<A: FourLanes> FourLanes for Plane<A> {
     }
 
     pass_on! {
-        mul_add(a: f64, b: f64, c: f64) -> f64;
+        scalar_mul_add(a: f64, b: f64, c: f64) -> f64;
         pack(values: [u32; 4], bits: usize) -> [u32; 4];
         transpose(rows: [Lanes4; 4]) -> [Lanes4; 4];
     }

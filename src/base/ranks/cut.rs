@@ -5,7 +5,7 @@ use std::ops::Range;
 /// Ratio of the longest time of a rank to the mean, above which loops are repartitioned.
 const UNEVEN: f64 = 1.05;
 /// Share assumed for a rank whose share is zero.
-const LEAST: f64 = 1e-3;
+const MIN_SHARE: f64 = 1e-3;
 
 /// Ratio of the load of a rank to its share, above which blocks of unequal cost are partitioned by their
 /// weights.
@@ -55,7 +55,7 @@ impl Cut {
         // Half of the correction is applied, because times scatter.
         let share = |rank: usize| self.bounds[rank + 1] - self.bounds[rank];
         let speeds: Vec<f64> =
-            (0..seconds.len()).map(|k| share(k).max(LEAST) / seconds[k].max(1e-9)).collect();
+            (0..seconds.len()).map(|k| share(k).max(MIN_SHARE) / seconds[k].max(1e-9)).collect();
         let all: f64 = speeds.iter().sum();
         let weights: Vec<f64> = (0..seconds.len()).map(|k| 0.5 * (share(k) + speeds[k] / all)).collect();
         Some(Self::by_weights(&weights))

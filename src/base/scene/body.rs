@@ -14,13 +14,13 @@ pub struct BodyDescription {
     pub name: String,
     /// Name of one of the scene's materials. The name is ignored for a `Wall`, which has none.
     pub material: String,
-    /// The space that the body fills at the start.
+    /// The shape that the body initially occupies.
     pub shape: Shape,
     /// Distance between neighbouring particles \[m\].
     pub spacing: f64,
     /// How the material moves: `TotalLagrangian`, `UpdatedLagrangian`, `Eulerian`, `Fluid`, `Rigid`, `Wall`.
     pub formulation: Item,
-    /// Velocity of all particles at the start \[m/s\].
+    /// Initial velocity of all particles \[m/s\].
     #[serde(default)]
     pub velocity: Option<Vec3>,
     /// Plugins for this body alone.

@@ -7,7 +7,7 @@ use super::requirements::{
 use super::{Axis, Dimension, Face, Problem, Scene, Select, StepRule, probe_check};
 use crate::notation::number;
 
-/// All that is wrong with the values of a scene.
+/// All problems with the values of a scene.
 pub(super) fn check(scene: &Scene) -> Vec<Problem> {
     let mut problems = Vec::new();
     if let Some(c) = scene.title.chars().find(|&c| c.is_control() && c != '\t') {

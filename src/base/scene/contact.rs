@@ -1,30 +1,30 @@
-//! Two bodies that touch.
+//! Contact between two bodies.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{BodyDescription, Item};
 
-/// A contact of two bodies.
+/// A contact between two bodies.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Contact {
-    /// The names of the two bodies; twice the same name is contact of a body with itself. `"grain*"` stands
+    /// The names of the two bodies; the same name twice is contact of a body with itself. `"grain*"` stands
     /// for all bodies whose names begin with `grain`: `("grain*", "floor")` is each of them with the floor,
     /// `("grain*", "grain*")` each with each other.
     pub between: (String, String),
-    /// How the force follows from the overlap of the surfaces: `Penalty`, `Hertz`.
+    /// The contact law, force against overlap of the surfaces: `Penalty`, `Hertz`.
     #[serde(default = "penalty")]
     pub law: Item,
     /// Coulomb's coefficient of friction \[-\].
     #[serde(default)]
     pub friction: f64,
-    /// Ratio of the normal velocities after and before an impact of rigid bodies \[-\]; at 1 the contact has
-    /// no dashpot. Between deformable bodies the dashpot is that of the two particles in contact, and waves
-    /// in the bodies carry energy away too.
+    /// Coefficient of restitution \[-\]: ratio of the normal velocities after and before an impact of rigid
+    /// bodies; at 1 the contact has no dashpot. Between deformable bodies the dashpot is that of the two
+    /// particles in contact, and waves in the bodies carry away energy too.
     #[serde(default = "elastic")]
     pub restitution: f64,
-    /// Share of the heat of friction that goes into the first of the two bodies, 0 to 1; the rest goes into
+    /// Fraction of the frictional heat that goes into the first of the two bodies, 0 to 1; the rest goes into
     /// the second. It heats the particles in contact, or those that carry the contact surface, of bodies
     /// whose material has a specific heat. Without it friction does not heat the bodies.
     #[serde(default)]
@@ -37,12 +37,13 @@ pub struct Contact {
 /// Contact surface of deformable bodies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum ContactSurface {
-    /// The surface of the shape, carried along by the particles. Bodies of which it is not known in facets,
-    /// contact of a body with itself and with a `Wall` fall back to `Particles`; so do bodies that can fail
-    /// as soon as a particle of that surface has failed.
+    /// The surface of the shape, as facets that move with the particles. `Particles` is used instead for
+    /// bodies whose surface has no facets, for contact of a body with itself and with a `Wall`, and for a
+    /// body that can fail once a particle of the surface has failed.
     #[default]
     Skin,
-    /// Each particle, as the ellipsoid that its deformation makes of a sphere of half a spacing.
+    /// Each particle, as an ellipsoid: a sphere with a radius of half a spacing, mapped by the deformation
+    /// gradient.
     Particles,
 }
 
@@ -51,7 +52,7 @@ fn penalty() -> Item {
 }
 
 impl Contact {
-    /// The pairs of names that it stands for, each once.
+    /// The pairs of names that `between` stands for, each once.
     pub(super) fn pairs<'s>(&self, bodies: &'s [BodyDescription]) -> Vec<(&'s str, &'s str)> {
         let named = |name: &str| {
             bodies.iter().map(|body| &*body.name).filter(|known| is_meant(name, known)).collect()
@@ -73,7 +74,7 @@ impl Contact {
 /// Wildcard for the rest of a name; no name contains it.
 pub(super) const ANY: char = '*';
 
-/// Whether `name` of a scene means the body with this name: the same, or its beginning followed by a star.
+/// Whether `name` in a scene refers to the body `body`: the same name, or its beginning followed by a star.
 pub(super) fn is_meant(name: &str, body: &str) -> bool {
     name.strip_suffix(ANY).map_or(name == body, |start| body.starts_with(start))
 }

@@ -1,6 +1,6 @@
-//! Tree of a scene text -> typed values, by serde. Every error knows its place, and as many are found as can
-//! be: an unknown field is left out, a bad entry of a list is left out, a bad field is left out and the rest
-//! read again.
+//! Converts the tree of a scene text into typed values, by serde. Every error has its position, and reading
+//! continues after most errors: an unknown field, a bad entry of a list and a bad field are skipped, and the
+//! rest is read again.
 
 mod access;
 mod context;
@@ -23,18 +23,18 @@ use super::Problem;
 use super::symbols::Symbols;
 use super::tree::Node;
 
-/// A text can hold that many bad fields before reading gives up to look for more.
+/// Maximum number of passes, each of which finds one more bad field.
 const MAX_PASSES: usize = 64;
 
 /// The decoded value and the problems.
 pub(super) struct Decoded<T> {
-    /// The value, if it is whole but for fields that it does not have.
+    /// The value, if it is complete apart from unknown fields.
     pub value: Option<T>,
     pub problems: Vec<Problem>,
 }
 
 /// Reads `node`, whose text starts at byte `offset` of the file, as a `T`. With `unnamed`, the name before
-/// its brackets is not looked at. Numbers may be expressions in `symbols`.
+/// its brackets is ignored. Numbers may be expressions in `symbols`.
 pub(super) fn decode<T: DeserializeOwned>(
     node: &Node,
     text: &str,

@@ -11,10 +11,10 @@ use super::symbols::Symbols;
 use super::table::Table;
 use super::tree::{Node, NodeKind};
 
-/// The names that the scene `root` defines; files of tables are found in `folder`.
+/// The names that the scene `root` defines. Files of tables are relative to `folder`.
 ///
 /// # Errors
-/// All that is wrong with them.
+/// All problems with the definitions.
 pub(super) fn define(root: &Node, text: &str, folder: &Path) -> Result<Arc<Symbols>, Vec<Problem>> {
     let mut problems = Vec::new();
     let parameters = entries(root, "parameters", &mut problems);
@@ -45,8 +45,8 @@ pub(super) fn define(root: &Node, text: &str, folder: &Path) -> Result<Arc<Symbo
 
 type Entry<'a> = (&'a str, &'a Node, &'a Node);
 
-/// Name, key and value of the entries of a block of the scene; that it is a map is checked where the scene is
-/// read.
+/// Name, key and value of the entries of a block of the scene. The reader of the scene checks that the block
+/// is a map.
 fn entries<'a>(root: &'a Node, block: &str, problems: &mut Vec<Problem>) -> Vec<Entry<'a>> {
     let Some(NodeKind::Map(entries)) = root.field(block).map(|field| &field.value.kind) else {
         return Vec::new();
@@ -63,7 +63,7 @@ fn entries<'a>(root: &'a Node, block: &str, problems: &mut Vec<Problem>) -> Vec<
     found
 }
 
-/// The values of parameters, which may name each other in any order.
+/// The values of parameters, which may refer to each other in any order.
 fn evaluate(parameters: &[Entry<'_>], problems: &mut Vec<Problem>) -> BTreeMap<String, f64> {
     let mut symbols = Symbols::default();
     let mut open: Vec<&Entry<'_>> = parameters.iter().collect();
@@ -87,7 +87,7 @@ fn evaluate(parameters: &[Entry<'_>], problems: &mut Vec<Problem>) -> BTreeMap<S
                     ),
                 )),
             };
-            // A parameter that is wrong counts as known, so that it is reported once.
+            // A bad parameter counts as known, so that it is reported once.
             symbols.parameters.insert(
                 (*name).to_owned(),
                 value.unwrap_or_else(|problem| {
@@ -107,7 +107,7 @@ fn evaluate(parameters: &[Entry<'_>], problems: &mut Vec<Problem>) -> BTreeMap<S
     }
 }
 
-/// The parameters that the expression of a parameter names.
+/// The parameters that the expression of a parameter refers to.
 fn used<'a>(node: &'a Node, parameters: &'a [Entry<'_>]) -> impl Iterator<Item = &'a str> {
     let text = match &node.kind {
         NodeKind::Text { value, .. } => value.as_str(),
@@ -116,7 +116,8 @@ fn used<'a>(node: &'a Node, parameters: &'a [Entry<'_>]) -> impl Iterator<Item =
     words(text).filter(|word| parameters.iter().any(|(name, ..)| name == word))
 }
 
-/// Each of `open` waits for another of them: follows the first ones until a name comes again.
+/// The problem of a circular definition. Each of `open` depends on another of them: the chain is followed
+/// until a name repeats.
 fn cycle(open: &[&Entry<'_>], parameters: &[Entry<'_>]) -> Problem {
     let mut chain: Vec<&Entry<'_>> = vec![open[0]];
     loop {

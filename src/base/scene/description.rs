@@ -11,7 +11,7 @@ use super::{
     Table, Time, Vec3,
 };
 
-/// An experiment: materials, bodies made of them, what acts on them, how long it runs and what is recorded.
+/// An experiment: materials, bodies, conditions, contacts, plugins, duration and output.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
@@ -23,20 +23,20 @@ pub struct Scene {
     /// `spacing: "dx"`.
     #[serde(default)]
     pub parameters: BTreeMap<String, Expression>,
-    /// Functions by name, given by points: `{ "pull": (file: "pull.csv") }`, called in expressions as
+    /// Tabulated functions by name: `{ "pull": (file: "pull.csv") }`, called in expressions as
     /// `"1e5*pull(t)"`.
     #[serde(default)]
     pub tables: BTreeMap<String, Table>,
     /// Whether the scene is plane strain in x-y or three-dimensional.
     pub dimension: Dimension,
-    /// The space in which particles may be. Without it space is unbounded.
+    /// The computational domain. Without it space is unbounded.
     #[serde(default)]
     pub domain: Option<Domain>,
     /// Acceleration of gravity on all bodies \[m/s²\].
     #[serde(default)]
     pub gravity: Vec3,
-    /// Arithmetic of the sums over neighbours of fluids. Without it, `Mixed` for spacings of 1e-6 to 1e6 m,
-    /// `Double` for others.
+    /// Floating-point precision of the sums over neighbours of fluids. Without it, `Mixed` for spacings of
+    /// 1e-6 to 1e6 m, `Double` for others.
     #[serde(default)]
     pub precision: Option<Precision>,
     /// Materials by the names that bodies refer to.
@@ -68,12 +68,12 @@ impl Scene {
         self.bodies.iter().find(|body| body.name == name)
     }
 
-    /// The bodies that a name means: one, or with a star at its end all whose names begin like it.
+    /// The bodies that a name refers to: one, or with a star at its end all whose names begin with it.
     pub fn bodies_named(&self, name: &str) -> impl Iterator<Item = &BodyDescription> {
         self.bodies.iter().filter(move |body| is_meant(name, &body.name))
     }
 
-    /// The contacts pair by pair, each with the number of the contact that it is from.
+    /// The contacts pair by pair, each with the index of the contact in the scene.
     pub fn contact_pairs(&self) -> impl Iterator<Item = (usize, Contact)> {
         self.contacts.iter().enumerate().flat_map(|(k, contact)| {
             let pairs = contact.pairs(&self.bodies).into_iter();

@@ -1,11 +1,11 @@
-//! The box in which particles may be, and the conditions at its sides.
+//! The computational domain and the conditions at its sides.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Vec3;
 
-/// The box in which particles may be.
+/// The computational domain, an axis-aligned box.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Domain {
@@ -13,7 +13,7 @@ pub struct Domain {
     pub min: Vec3,
     /// Corner with the largest coordinates \[m\].
     pub max: Vec3,
-    /// Axes along which the domain repeats itself; a particle that leaves on one side enters on the other.
+    /// Axes along which the domain is periodic; a particle that leaves on one side enters on the other.
     #[serde(default)]
     pub periodic: Vec<Axis>,
     /// Treatment of a particle that leaves along an axis that is not periodic.
@@ -33,7 +33,7 @@ pub enum Axis {
 }
 
 impl Axis {
-    /// The place of the axis in a vector: 0, 1 or 2.
+    /// The index of the axis in a vector: 0, 1 or 2.
     pub const fn index(self) -> usize {
         self as usize
     }
@@ -45,8 +45,8 @@ pub enum Outside {
     /// The run stops and names the particle.
     #[default]
     Error,
-    /// The particle is removed: it no longer moves or interacts, recordings leave it out, and the summary
-    /// counts it. The energy that leaves with it has an account of its own, `removed`. A rigid body leaves as
-    /// a whole, once all of its particles are outside.
+    /// The particle is removed: it no longer moves or interacts, it is absent from recordings, and the
+    /// summary counts it. Its energy is booked in the account `removed`. A rigid body is removed as a whole,
+    /// once all of its particles are outside.
     Remove,
 }

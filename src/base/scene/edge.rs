@@ -1,18 +1,19 @@
-//! Where the held part of a body ends.
+//! Position of the edge of a constrained part of a body.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Where the part of a Lagrangian body that a condition holds or moves ends: along all axes if it is selected
-/// by `within`, along any if by `face`.
+/// Position of the edge of the part of a Lagrangian body that a condition holds or moves. It matters for a
+/// part selected by `within` if the condition holds all axes, for one selected by `face` if it holds any.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum Edge {
-    /// On the surface of the stated shape, or on the stated side: the outermost held particles are moved
-    /// there, held particles behind them do not interact, and the particles beside the edge carry the share
-    /// of their stress that their cells have in front of it.
+    /// On the surface of the selecting shape, or on the selected face. The outermost held particles are moved
+    /// there, held particles behind them do not interact, and particles next to the edge carry only the
+    /// fraction of their stress that corresponds to the part of their cell in front of the edge.
     #[default]
     Stated,
-    /// At the outermost held particles, mostly half a spacing inside: particles stay in their lattice.
+    /// At the outermost held particles, usually half a spacing inside the shape: particles stay in their
+    /// lattice.
     Particles,
 }

@@ -1,4 +1,4 @@
-//! Functions of place and time that a scene writes as text: `"-0.1*smoothstep(t/0.01)"`.
+//! Functions of position and time that a scene writes as text: `"-0.1*smoothstep(t/0.01)"`.
 
 mod compile;
 mod functions;
@@ -29,10 +29,10 @@ pub fn expression_names() -> &'static [(&'static str, &'static str)] {
 ///
 /// It is written with numbers, `+ - * / ^`, brackets, the constants `pi` and `e` and the functions `abs sqrt
 /// exp ln log10 sin cos tan asin acos atan sinh cosh tanh floor sign step ramp smoothstep` of one and `min
-/// max pow atan2 mod` of two arguments. `step` is 0 below 0 and 1 from there on; `ramp` and `smoothstep` go
-/// from 0 at 0 to 1 at 1 and stay there, linearly and as 3 s² - 2 s³. Powers bind tighter than signs: `-x^2`
-/// is `-(x^2)`, and `a^b^c` is `a^(b^c)`. The parameters of the scene are constants, its tables are functions
-/// of one argument.
+/// max pow atan2 mod` of two arguments. `step` is 0 for negative arguments and 1 otherwise; `ramp` and
+/// `smoothstep` rise from 0 at 0 to 1 at 1, linearly and as 3 s² - 2 s³, and are constant outside. Powers
+/// bind tighter than signs: `-x^2` is `-(x^2)`, and `a^b^c` is `a^(b^c)`. The parameters of the scene are
+/// constants, its tables are functions of one argument.
 #[derive(Clone, Debug)]
 pub struct Expression {
     text: String,
@@ -40,12 +40,12 @@ pub struct Expression {
 }
 
 impl Expression {
-    /// The function that is `value` everywhere and always.
+    /// The constant function `value`.
     pub fn constant(value: f64) -> Self {
         Self { text: format!("{value:?}"), program: Arc::new(Program::constant(value)) }
     }
 
-    /// The value at place `x` \[m\] and time `t` \[s\].
+    /// The value at position `x` \[m\] and time `t` \[s\].
     pub fn eval(&self, x: DVec3, t: f64) -> f64 {
         let variables = [x.x, x.y, x.z, t];
         let mut stack = [0.0; MAX_STACK];
@@ -71,22 +71,22 @@ impl Expression {
         stack[0]
     }
 
-    /// Whether the value is the same everywhere and always.
+    /// Whether the function depends on neither position nor time.
     pub fn is_constant(&self) -> bool {
         matches!(self.program.ops.as_slice(), [Op::Constant(_)])
     }
 
-    /// Whether the value changes with time.
+    /// Whether the function depends on time.
     pub fn depends_on_time(&self) -> bool {
         self.program.ops.iter().any(|op| matches!(op, Op::Variable(3)))
     }
 
-    /// Whether the value differs from place to place.
+    /// Whether the function depends on position.
     pub fn depends_on_place(&self) -> bool {
         self.program.ops.iter().any(|op| matches!(op, Op::Variable(0..=2)))
     }
 
-    /// Compiles a text that may use these names.
+    /// Compiles a text that may use the names of `symbols`.
     pub(super) fn with_symbols(text: &str, symbols: &Symbols) -> Result<Self, ExpressionError> {
         Ok(Self { text: text.to_owned(), program: Arc::new(compile::compile(text, symbols)?) })
     }
@@ -97,11 +97,11 @@ impl Expression {
     }
 }
 
-/// A text that is not an expression: what is wrong with which of its bytes.
+/// An error in the text of an expression, with the bytes it refers to.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{message} in the expression")]
 pub struct ExpressionError {
-    /// First byte that the error is about.
+    /// First byte that the error refers to.
     pub start: usize,
     /// Byte after the last.
     pub end: usize,
@@ -128,7 +128,7 @@ impl FromStr for Expression {
 }
 
 impl PartialEq for Expression {
-    /// Equal text.
+    /// Equality of the texts.
     fn eq(&self, other: &Self) -> bool {
         self.text == other.text
     }

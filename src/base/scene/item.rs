@@ -1,4 +1,5 @@
-//! A thing in a scene that a registry knows by name: a material, formulation, plugin, condition, contact law.
+//! An item of a scene whose type a registry knows by name: a material, formulation, plugin, condition,
+//! contact law.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -17,7 +18,7 @@ use super::tree::{Node, NodeKind};
 use super::{Problem, path, syntax};
 
 /// A name with or without parameters, `NeoHookean(density: 1.0)` or `hourglass_control`, whose type is found
-/// by the name in a registry. It keeps its text and place in the file until then.
+/// by the name in a registry. Until then it keeps its text and its position in the file.
 #[derive(Clone, Debug)]
 pub struct Item {
     name: String,
@@ -39,12 +40,12 @@ impl Item {
         }
     }
 
-    /// A name without parameters that stands in no file: a default.
+    /// A name without parameters and without a position in a file: a default.
     pub(super) fn bare(name: &str) -> Self {
         Self { name: name.to_owned(), text: name.to_owned(), start: 0, symbols: Arc::default() }
     }
 
-    /// The name by which a registry knows the thing.
+    /// The name by which a registry knows the item.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -58,10 +59,10 @@ impl Item {
         syntax::read(&self.text, self.start)
     }
 
-    /// The parameters as a `T`. A bare name and empty brackets are a `T` with all defaults.
+    /// The parameters as a `T`. A bare name and empty brackets yield a `T` with all defaults.
     ///
     /// # Errors
-    /// All that is wrong with the parameters, each at its place in the file.
+    /// All problems with the parameters, each at its position in the file.
     pub fn parse<T: DeserializeOwned>(&self) -> Result<T, Vec<Problem>> {
         let node = self.tree().map_err(|problem| vec![problem])?;
         let decoded = decode::decode(&node, &self.text, self.start, true, &self.symbols);
@@ -71,13 +72,13 @@ impl Item {
         }
     }
 
-    /// A problem with the name itself, such as that no registry knows it.
+    /// A problem with the name itself, such as an unknown name.
     pub fn problem_with_name(&self, message: impl Into<String>) -> Problem {
         Problem::at_span(self.start..self.start + self.name.len(), message)
     }
 
-    /// A problem with a parameter, such as `poisson` or `hardening.modulus`; where it is not written, with
-    /// the item. `help` says what would be right; it may be empty.
+    /// A problem with a parameter, such as `poisson` or `hardening.modulus`; if the parameter is not written,
+    /// it is shown at the item. `help` is the correction; it may be empty.
     pub fn problem(&self, parameter: &str, message: impl Into<String>, help: impl Into<String>) -> Problem {
         let at = self.tree().ok().and_then(|node| path::exact(&node, parameter));
         let at = at.unwrap_or(self.start..self.start + self.name.len());
@@ -88,7 +89,7 @@ impl Item {
 }
 
 impl PartialEq for Item {
-    /// Equal text, wherever it stands.
+    /// Equality of the texts, wherever they are.
     fn eq(&self, other: &Self) -> bool {
         self.text == other.text
     }

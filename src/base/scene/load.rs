@@ -1,4 +1,4 @@
-//! File or text -> scene.
+//! Reads a scene from a file or a text.
 
 use std::path::Path;
 
@@ -8,27 +8,26 @@ use super::definitions::define;
 use super::{Problem, Scene, SceneError, Source};
 use crate::files;
 
-/// Reads a scene file, with some of its values replaced: `overrides` are pairs of path and value, as in
-/// `("time.end", "0.5")`.
+/// Reads a scene file with overrides, pairs of path and value, as in `("time.end", "0.5")`.
 ///
 /// # Errors
-/// The file cannot be read, an override leads nowhere, or the text is not a valid scene; all that is wrong at
-/// once.
+/// The file cannot be read, the path of an override does not exist, or the text is not a valid scene; all
+/// problems are reported together.
 pub fn load(path: &Path, overrides: &[(String, String)]) -> Result<(Scene, Source), SceneError> {
     load_checked(path, overrides, &|_| Vec::new())
 }
 
-/// [`load`] with the problems that another check finds, such as one of names.
+/// [`load`] with a further check, such as one of names.
 ///
 /// # Errors
-/// Those of [`load`] and those that the check finds; all that is wrong at once.
+/// Those of [`load`] and those that the check finds, all reported together.
 pub fn load_checked(
     path: &Path,
     overrides: &[(String, String)],
     check_too: &dyn Fn(&Scene) -> Vec<Problem>,
 ) -> Result<(Scene, Source), SceneError> {
     let name = path.display().to_string();
-    let read = files::read(path, files::LARGEST_TEXT).map_err(|error| {
+    let read = files::read(path, files::MAX_TEXT).map_err(|error| {
         let source = Source::new(name.clone(), "");
         let problem = Problem::new(match error.kind() {
             std::io::ErrorKind::NotFound => "the scene file does not exist".into(),
@@ -47,10 +46,11 @@ pub fn load_checked(
     parse_checked(Source::new(name, text), overrides, check_too)
 }
 
-/// Reads a scene text, with some of its values replaced as by [`load`].
+/// Reads a scene text with overrides as in [`load`].
 ///
 /// # Errors
-/// An override leads nowhere, or the text is not a valid scene; all that is wrong at once.
+/// The path of an override does not exist, or the text is not a valid scene; all problems are reported
+/// together.
 pub fn parse_with(source: Source, overrides: &[(String, String)]) -> Result<(Scene, Source), SceneError> {
     parse_checked(source, overrides, &|_| Vec::new())
 }
@@ -58,15 +58,15 @@ pub fn parse_with(source: Source, overrides: &[(String, String)]) -> Result<(Sce
 /// Reads a scene text.
 ///
 /// # Errors
-/// The text is not a valid scene; all that is wrong at once.
+/// The text is not a valid scene; all problems are reported together.
 pub fn parse(source: Source) -> Result<(Scene, Source), SceneError> {
     parse_with(source, &[])
 }
 
-/// [`parse_with`] with the problems that another check finds, such as one of names.
+/// [`parse_with`] with a further check, such as one of names.
 ///
 /// # Errors
-/// Those of [`parse_with`] and those that the check finds; all that is wrong at once.
+/// Those of [`parse_with`] and those that the check finds, all reported together.
 pub fn parse_checked(
     mut source: Source,
     overrides: &[(String, String)],
@@ -90,8 +90,8 @@ pub fn parse_checked(
 }
 
 impl Scene {
-    /// The scene as RON text that [`parse`] reads back: how a scene that a program puts together becomes one
-    /// with places for errors, and travels in checkpoints.
+    /// The scene as RON text that [`parse`] reads back. Checkpoints store it, and the errors of a scene that
+    /// a program assembles refer to it.
     ///
     /// # Errors
     /// A value has no RON form.

@@ -50,7 +50,7 @@ pub use load::{load, load_checked, parse, parse_checked, parse_with};
 pub use names::{nearest, unknown};
 pub use per_axis::PerAxis;
 pub use precision::Precision;
-pub use probe::{Line, Probe, Quantity, RelativeTo, Take};
+pub use probe::{Line, Probe, Quantity, Reduction, RelativeTo};
 pub use problem::{Problem, SceneError, SourcePlace};
 pub use record::RecordDescription;
 pub use reference::{Described, Parameter, TypeDoc, parameters, schema_markdown, type_docs};

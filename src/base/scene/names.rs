@@ -2,7 +2,7 @@
 
 use super::slips::synonym;
 
-/// Signs of a name that errors show.
+/// Maximum number of characters of a name in a message.
 const LONGEST_NAME: usize = 80;
 
 /// Message and help lines for a name that is not known: what was found, the nearest known name, all known
@@ -21,7 +21,7 @@ pub fn unknown<S: AsRef<str>>(kind: &str, name: &str, known: &[S]) -> (String, V
     (format!("unknown {kind} `{}`", shortened(name)), help)
 }
 
-/// The name as errors show it: of a very long one the beginning.
+/// The name as messages show it; a very long one is truncated.
 fn shortened(name: &str) -> String {
     match name.char_indices().nth(LONGEST_NAME) {
         Some((end, _)) => format!("{}...", &name[..end]),
@@ -29,7 +29,7 @@ fn shortened(name: &str) -> String {
     }
 }
 
-/// The known name that `name` was most likely meant to be, if any is near enough.
+/// The known name that `name` most likely stands for, if any is similar enough.
 pub fn nearest<'a, S: AsRef<str>>(name: &str, known: &'a [S]) -> Option<&'a str> {
     if name.len() > 4 * LONGEST_NAME {
         return None;
@@ -51,8 +51,8 @@ pub fn nearest<'a, S: AsRef<str>>(name: &str, known: &'a [S]) -> Option<&'a str>
     best.map(|(_, candidate)| candidate).or_else(longer).or_else(|| of_like_words(&wanted, known))
 }
 
-/// The known name all of whose words of three letters and more are in the wanted one, in any order: that with
-/// the most of them.
+/// The known name whose words of three letters and more all occur in the wanted one, in any order: the one
+/// with the most such words.
 fn of_like_words<'a, S: AsRef<str>>(wanted: &str, known: &'a [S]) -> Option<&'a str> {
     let words: Vec<&str> = wanted.split('_').collect();
     let of = |candidate: &'a str| candidate.split('_').filter(|word| word.len() > 2);

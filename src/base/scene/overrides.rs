@@ -1,4 +1,4 @@
-//! Single values of a scene replaced from outside: `time.end=0.5`,
+//! Overrides, single values of a scene replaced from outside: `time.end=0.5`,
 //! `bodies.plate.plugins.hourglass_control.alpha=10`.
 
 use super::expression::{constant, words};
@@ -8,15 +8,15 @@ use super::symbols::Symbols;
 use super::tree::{Node, NodeKind};
 use super::{Problem, Source, syntax};
 
-/// Blocks of a scene that may be left out as a whole and are begun when a field of theirs is set.
+/// Optional blocks of a scene; an override of one of their fields adds the block.
 const OPTIONAL_BLOCKS: [&str; 2] = ["domain", "record"];
 
 impl Source {
-    /// The text with the value at `path` replaced by `value`, or added where the struct around it lacks the
-    /// field. Lines stay where they are. The value of a text may be given without quotes.
+    /// The text with the value at `path` replaced by `value`, or added if the enclosing struct lacks the
+    /// field. Line numbers stay the same. The quotes of a text value may be omitted.
     ///
     /// # Errors
-    /// The text or `value` is not RON, or `path` leads nowhere.
+    /// The text or `value` is not RON, or `path` does not exist.
     pub fn with_override(&self, path: &str, value: &str) -> Result<Self, Problem> {
         let root = self.tree()?;
         let value = value.replace(['\n', '\r'], " ");
@@ -32,7 +32,7 @@ impl Source {
                     unambiguous(node, step, &setting)?;
                     node = found.value();
                 }
-                // A parameter that nothing uses would change nothing.
+                // No expression of the scene can use a parameter that the scene does not define.
                 None if i == 1 && steps[0] == PathStep::Name("parameters".into()) => {
                     return Err(not_there(node, step, &setting));
                 }
@@ -55,7 +55,7 @@ impl Source {
         changed
     }
 
-    /// The last replacement that has written what stands at `span`, as `path=value`.
+    /// The last override that has written the text at `span`, as `path=value`.
     pub(super) fn setting_at(&self, span: &std::ops::Range<usize>) -> Option<String> {
         let root = self.tree().ok()?;
         let covers = |path: &str| {
@@ -66,7 +66,7 @@ impl Source {
     }
 }
 
-/// The value as the scene has to say it: a text that replaces a text may lack its quotes.
+/// The value in the notation of the scene: a text that replaces a text gets its quotes.
 fn written(value: &str, replaced: Option<&Node>, setting: &str) -> Result<String, Problem> {
     let parsed = syntax::read(value, 0);
     let replaces_number = replaced.is_some_and(|node| matches!(node.kind, NodeKind::Number { .. }));
@@ -75,7 +75,7 @@ fn written(value: &str, replaced: Option<&Node>, setting: &str) -> Result<String
         Ok(Node { kind: NodeKind::Text { .. } | NodeKind::Number { .. }, .. }) => Ok(value.to_owned()),
         _ if replaces_text => Ok(format!("\"{}\"", value.replace('\\', "\\\\").replace('"', "\\\""))),
         Ok(_) => Ok(value.to_owned()),
-        // `10*dx` is no RON, but it may stand for a number in quotes.
+        // `10*dx` is not RON, but in quotes it may stand for a number.
         Err(_) if replaces_number && is_expression(value) => Ok(format!("\"{value}\"")),
         Err(problem) => {
             let place =
@@ -88,13 +88,13 @@ fn written(value: &str, replaced: Option<&Node>, setting: &str) -> Result<String
     }
 }
 
-/// Whether a text is an expression for a number, whatever the names in it stand for.
+/// Whether a text has the syntax of an expression, with any names.
 fn is_expression(text: &str) -> bool {
     let parameters = words(text).map(|word| (word.to_owned(), 1.0)).collect();
     constant(text, &Symbols { parameters, ..Symbols::default() }).is_ok()
 }
 
-/// Where the rest of a path is to be added, and the text.
+/// The byte at which the rest of a path is inserted, and the inserted text.
 fn insertion(node: &Node, rest: &[PathStep], value: &str) -> Option<(usize, String)> {
     let text = match rest {
         [PathStep::Name(name)] => match node.kind {
@@ -151,7 +151,7 @@ fn not_there(node: &Node, step: &PathStep, setting: &str) -> Problem {
     }
 }
 
-/// A name that several entries of a list share cannot say which is meant.
+/// Rejects a name that several entries of a list share.
 fn unambiguous(node: &Node, step: &PathStep, setting: &str) -> Result<(), Problem> {
     if let (NodeKind::List(_), PathStep::Name(name)) = (&node.kind, step) {
         let count = path::children(node).into_iter().filter(|child| child == name).count();

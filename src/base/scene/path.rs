@@ -1,8 +1,8 @@
-//! Places in a scene by path: `bodies[1].shape.min`, `bodies.plate.plugins.hourglass_control.alpha`.
+//! Values of a scene by path: `bodies[1].shape.min`, `bodies.plate.plugins.hourglass_control.alpha`.
 //!
 //! A step is the name of a field, the key of a map, or an index in brackets. In a list a step by name finds
-//! the entry whose field `name` is that text, or the entry that is itself called so, as plugins and
-//! conditions are; a number there is an index.
+//! the entry whose field `name` has that text, or the entry that has that name itself, as plugins and
+//! conditions do; a number there is an index.
 
 use std::ops::Range;
 
@@ -15,7 +15,7 @@ pub(super) enum PathStep {
     Index(usize),
 }
 
-/// The steps of a path; none where it is not a path.
+/// The steps of a path; none if the text is not a path.
 pub(super) fn steps(path: &str) -> Option<Vec<PathStep>> {
     let mut steps = Vec::new();
     for part in path.split('.') {
@@ -70,7 +70,7 @@ pub(super) fn child<'a>(node: &'a Node, step: &PathStep) -> Option<PathEnd<'a>> 
             let axis = ["x", "y", "z"].iter().position(|axis| axis == name)?;
             entries.get(axis).map(PathEnd::Entry)
         }
-        // `Some(value)` and a variant around one struct are what they hold.
+        // `Some(value)` and a variant with a single value are passed over: the step goes to their content.
         (NodeKind::Tuple(entries), PathStep::Name(_)) if entries.len() == 1 => child(&entries[0], step),
         _ => None,
     }
@@ -86,7 +86,7 @@ pub(super) fn children(node: &Node) -> Vec<&str> {
     }
 }
 
-/// The bytes of the value at `path`, or of the nearest value above it that is there.
+/// The bytes of the value at `path`, or of its nearest parent in the text.
 pub(super) fn nearest(root: &Node, path: &str) -> Range<usize> {
     let mut node = root;
     for step in steps(path).unwrap_or_default() {
@@ -98,7 +98,7 @@ pub(super) fn nearest(root: &Node, path: &str) -> Range<usize> {
     if node.span == root.span { node.head() } else { node.span.clone() }
 }
 
-/// The bytes of the value at `path`, if it is there.
+/// The bytes of the value at `path`, if it exists.
 pub(super) fn exact(root: &Node, path: &str) -> Option<Range<usize>> {
     let found = steps(path)?.iter().try_fold(root, |node, step| Some(child(node, step)?.value()))?;
     Some(found.span.clone())

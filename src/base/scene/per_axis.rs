@@ -9,8 +9,8 @@ use serde::de::{Error, SeqAccess, Visitor};
 use serde::ser::SerializeTuple;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// A value for each of the axes x, y, z, or `None` where an axis is left alone. Written with two entries (the
-/// third is then `None`) or three.
+/// A value for each of the axes x, y, z, or `None` for an axis that is not affected. Written with two entries
+/// (the third is then `None`) or three.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PerAxis<T>(pub [Option<T>; 3]);
 

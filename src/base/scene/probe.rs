@@ -12,71 +12,73 @@ use crate::shapes::Shape;
 pub struct Probe {
     /// Name of the probe and of its file.
     pub name: String,
-    /// The particles that it averages over (for forces and torques: sums over), or the `surface` of a body.
-    /// Either this, `at` or `line`.
+    /// The particles over which the probe averages (sums, for forces and torques), or the `surface` of a
+    /// body. Either this, `at` or `line`.
     #[serde(default)]
     pub on: Option<Select>,
-    /// The point in space at which it measures \[m\]. Either this or `on`. A field there is interpolated from
-    /// the bodies that have it, walls left out: their particles stand for the fluid beside them. Of fluids,
-    /// solids and rigid bodies only those count to which the particle nearest to the point belongs.
+    /// The point at which the probe measures \[m\]. Either this or `on`. A field is interpolated there from
+    /// the bodies that have it, except walls, whose particles represent the fluid next to them. Of fluids,
+    /// solids and rigid bodies only the kind of the particle nearest to the point contributes.
     #[serde(default)]
     pub at: Option<Vec3>,
-    /// A line along which it measures, a column for each of its places. Instead of `on` or `at`.
+    /// A line along which the probe measures, with a column for each point. Instead of `on` or `at`.
     #[serde(default)]
     pub line: Option<Line>,
-    /// With `at` or `line`: the solid or rigid body whose points these are, given in their places at the
-    /// start. They move with the body, and at its surface they show the values at the surface. Without it
-    /// they are points of space.
+    /// With `at` or `line`: the solid or rigid body to which the points belong, given by their initial
+    /// positions. They move with the body, and on its surface they show the surface values. Without it the
+    /// points are fixed in space.
     #[serde(default)]
     pub follows: Option<String>,
-    /// Reduction over the particles of `on`, or over its `surface`: without it the mean, of forces the sum.
+    /// Reduction over the particles of `on`, or over its `surface`. The default is the mean, for forces the
+    /// sum.
     #[serde(default)]
-    pub take: Option<Take>,
-    /// A second place, whose value is subtracted.
+    pub take: Option<Reduction>,
+    /// A second position, whose value is subtracted.
     #[serde(default)]
     pub relative_to: Option<RelativeTo>,
-    /// No error where nothing is at the point at the start: the probe shows NaN until something is.
+    /// Whether there may be no body at the point at the start: the probe shows NaN until there is one.
+    /// Otherwise this is an error.
     #[serde(default)]
     pub may_be_empty: bool,
-    /// Whether each sample is the mean over the time since the last one, in the place of the value at its
-    /// end: measured in every step. Forces of fluids oscillate with acoustic waves, so that instantaneous
-    /// samples scatter. `stop_when` compares the values all the same.
+    /// Whether each sample is the mean over all steps since the last sample, instead of the value at its
+    /// time. Forces of fluids oscillate with acoustic waves, so that instantaneous samples scatter.
+    /// `stop_when` always compares instantaneous values.
     #[serde(default)]
     pub mean: bool,
     /// The measured quantity.
     pub quantity: Quantity,
     /// Time between two samples \[s\]; without it a tenth of the interval of the recording. A sample is taken
-    /// at the end of the first step at or after the stated time, and the file has the time of that step.
+    /// at the end of the first step at or after the stated time, and the file contains the time of that step.
     #[serde(default)]
     pub every: Option<f64>,
 }
 
-/// A straight line with places at equal distances, its ends among them.
+/// A straight line of equidistant points, its ends included.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Line {
-    /// First place \[m\].
+    /// First point \[m\].
     pub from: Vec3,
-    /// Last place \[m\].
+    /// Last point \[m\].
     pub to: Vec3,
-    /// Number of places, 2 to 1000.
+    /// Number of points, 2 to 1000.
     pub points: u32,
 }
 
 /// Reduction over a selection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-pub enum Take {
-    /// The mean: of equal shares of particles, of areas of a `surface`.
+pub enum Reduction {
+    /// The mean: every particle has the same weight, a `surface` is weighted by area.
     Mean,
     /// The sum over the particles.
     Sum,
-    /// The minimum with its place; of vectors that of the magnitude.
+    /// The minimum and its position; for vectors that of the magnitude.
     Minimum,
-    /// The maximum with its place; of vectors that of the magnitude.
+    /// The maximum and its position; for vectors that of the magnitude.
     Maximum,
 }
 
-/// The place to which a probe is relative.
+/// The reference position of a relative probe.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RelativeTo {
@@ -86,7 +88,7 @@ pub struct RelativeTo {
     /// This point \[m\]. Either this or `on`.
     #[serde(default)]
     pub at: Option<Vec3>,
-    /// With `at`: the body whose point it is.
+    /// With `at`: the body to which the point belongs.
     #[serde(default)]
     pub follows: Option<String>,
 }
@@ -100,9 +102,9 @@ pub enum Quantity {
     Position,
     /// Velocity \[m/s\].
     Velocity,
-    /// Sum over the selection of all forces on its particles except those of supports \[N\]: where a
-    /// condition holds or drives the selection, the force that the body exerts on the condition. A body that
-    /// hangs from its support by its weight pulls it down.
+    /// Sum of all forces on the particles of the selection except those of supports \[N\]. Where a condition
+    /// holds or drives the selection, it is the force that the body exerts on the condition: the weight of a
+    /// body that hangs from its support points down.
     Force,
     /// Torque of the same forces about the centre of mass of the selection \[N m\].
     Torque,
@@ -111,40 +113,39 @@ pub enum Quantity {
         /// The point \[m\].
         about: Vec3,
     },
-    /// Distance from the place of `relative_to` \[m\]: a strain gauge.
+    /// Distance from the position of `relative_to` \[m\]: a strain gauge.
     Distance,
     /// A field of the particles by name, such as `"pressure"`, `"velocity.x"` or `"stress.xy"`.
     Field(String),
-    /// Kinetic, strain and all other energies of the selected bodies, or of everything where none is given
-    /// \[J\].
+    /// Kinetic, strain and all other energies of the selected bodies, or of the whole scene without a
+    /// selection \[J\].
     Energy,
-    /// Height of the surface of the fluids above the point `at`, and the length of the line up from that
-    /// point which is wet, as a wire gauge shows it \[m\]. Where a wave breaks over the point, the height is
-    /// that of its highest surface.
+    /// Height of the free surface of the fluids above the point `at`, and the wetted length of a wire gauge
+    /// that starts at the point \[m\]. In a breaking wave the height is that of the highest surface.
     WaterLevel {
-        /// Direction of the line; without it against gravity.
+        /// Direction of the gauge; without it against gravity.
         #[serde(default)]
         along: Option<Vec3>,
     },
-    /// Pressure that a sensor in the surface of a wall shows \[Pa\]: the mean over its area of the pressure
-    /// of the fluids in front of it, zero where there are none. `at` is the centre of its face.
+    /// Reading of a pressure sensor in a wall \[Pa\]: the mean over its face of the pressure of the fluids in
+    /// front of it, zero where there are none. `at` is the centre of its face.
     PressureSensor {
-        /// Diameter of its round face; in two dimensions the length of its face \[m\]. Zero: at the point.
+        /// Diameter of the circular face; in two dimensions the length of the face \[m\]. Zero: the pressure
+        /// at the point.
         #[serde(default)]
         diameter: f64,
-        /// Direction out of its face, into the fluid.
+        /// Normal of the face, into the fluid.
         normal: Vec3,
     },
-    /// Volume of fluid that passes a plane through `at` in a second \[m3/s\], in two dimensions for each
-    /// metre of width.
+    /// Volume flow rate of the fluids through a plane at `at` \[m3/s\], in two dimensions per metre of width.
     Flux {
-        /// The direction in which it counts as positive.
+        /// Normal of the plane, in the direction of positive flow.
         normal: Vec3,
-        /// The part of the plane that counts; without it the whole plane.
+        /// The part of the plane that is measured; without it the whole plane.
         #[serde(default)]
         within: Option<Shape>,
     },
-    /// Force of all fluids on the selection, by pressure and viscosity, and the viscous part of it \[N\].
+    /// Force of all fluids on the selection, by pressure and viscosity, and its viscous part \[N\].
     FluidForce,
     /// Torque of the force of all fluids on the selection \[N m\].
     FluidTorque {
@@ -156,15 +157,16 @@ pub enum Quantity {
     RemovedVolume,
     /// Roughness of the surface of the selection, seen against its normal, from the highest particle of every
     /// column that is a spacing wide \[m\]: the arithmetic mean deviation `Ra` from the mean height, the
-    /// difference `Rz` of the highest and the lowest height, and the mean height.
+    /// difference `Rz` of the maximum and the minimum height, and the mean height.
     Roughness {
-        /// Direction out of the surface.
+        /// Outward normal of the surface.
         normal: Vec3,
     },
 }
 
 impl Quantity {
-    /// Whether it is measured at a point and not of a selection; neither where it may be either.
+    /// Whether the quantity is measured at a point (true) or on a selection (false); none if both are
+    /// possible.
     pub fn at_point(&self) -> Option<bool> {
         match self {
             Self::WaterLevel { .. } | Self::PressureSensor { .. } | Self::Flux { .. } => Some(true),

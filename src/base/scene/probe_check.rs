@@ -1,10 +1,10 @@
-//! Errors of the probes of a scene that are found before anything is built.
+//! Checks of the probes of a scene before anything is built.
 
 use super::requirements::{in_plane, positive_time, twice, unknown_body, usable_name};
-use super::{Probe, Problem, Quantity, Scene, Take};
+use super::{Probe, Problem, Quantity, Reduction, Scene};
 
-/// Places on a line, at most.
-const MOST_PLACES: u32 = 1000;
+/// Maximum number of points on a line.
+const MAX_POINTS: u32 = 1000;
 
 /// Checks all probes.
 pub(super) fn check(scene: &Scene, problems: &mut Vec<Problem>) {
@@ -47,7 +47,7 @@ pub(super) fn check(scene: &Scene, problems: &mut Vec<Problem>) {
     }
 }
 
-/// Problem of the place where a probe measures.
+/// Problem with the position of a probe.
 fn place(probe: &Probe, i: usize) -> Option<Problem> {
     let places = [probe.on.is_some(), probe.at.is_some(), probe.line.is_some()];
     let (field, message) = match (places, &probe.quantity) {
@@ -72,10 +72,10 @@ fn place(probe: &Probe, i: usize) -> Option<Problem> {
     ))
 }
 
-/// Problem of the other fields of a probe.
+/// Problem with the other fields of a probe.
 fn options(probe: &Probe, i: usize) -> Option<Problem> {
     let is_of_field = probe.quantity.at_point().is_none();
-    let extreme = matches!(probe.take, Some(Take::Minimum | Take::Maximum));
+    let extreme = matches!(probe.take, Some(Reduction::Minimum | Reduction::Maximum));
     let (field, message, help) = if probe.follows.is_some() && (probe.on.is_some() || !is_of_field) {
         let help = "points are given by `at` or `line`; fields, positions, displacements and velocities have values at points of bodies";
         ("follows", "`follows` needs a point of a body and a field there", help)
@@ -102,7 +102,7 @@ fn options(probe: &Probe, i: usize) -> Option<Problem> {
         )
     } else if probe.line.is_some_and(|line| line.from == line.to) {
         ("line.to", "the two ends of a line must be different points", "a single point is measured with `at`")
-    } else if probe.line.is_some_and(|line| !(2..=MOST_PLACES).contains(&line.points)) {
+    } else if probe.line.is_some_and(|line| !(2..=MAX_POINTS).contains(&line.points)) {
         (
             "line.points",
             "`points` must be from 2 to 1000",

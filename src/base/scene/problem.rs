@@ -1,4 +1,4 @@
-//! A problem of a scene: what, where, and how to correct it.
+//! A problem of a scene: its description, position and correction.
 
 use std::fmt;
 use std::ops::Range;
@@ -8,26 +8,26 @@ use annotate_snippets::{AnnotationKind, Level, Origin, Renderer, Snippet};
 use super::Source;
 use super::path;
 
-/// One thing that is wrong with a scene.
+/// One problem of a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
-    /// The finding, lower case, without a full stop.
+    /// The description, lower case, without a full stop.
     pub message: String,
-    /// Where it is.
+    /// The position.
     pub at: SourcePlace,
     /// The corrections, a line each.
     pub help: Vec<String>,
 }
 
-/// A place in a scene.
+/// A position in a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SourcePlace {
     /// The scene as a whole.
     Scene,
     /// Bytes of the text.
     Span(Range<usize>),
-    /// A value by its path, such as `bodies[1].shape.min` or `bodies.plate.spacing`; where the text does not
-    /// contain it, the nearest value above it that it does contain.
+    /// A value by its path, such as `bodies[1].shape.min` or `bodies.plate.spacing`; if the text does not
+    /// contain it, its nearest parent in the text.
     Path(String),
 }
 
@@ -47,21 +47,21 @@ impl Problem {
         Self { at: SourcePlace::Path(path.into()), ..Self::new(message) }
     }
 
-    /// The same with a line that says what would be right.
+    /// The same problem with a line that states the correction.
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help.extend(Some(help.into()).filter(|help| !help.is_empty()));
         self
     }
 
-    /// The same with several lines that say what would be right.
+    /// The same problem with several lines that state the correction.
     #[must_use]
     pub fn helps(mut self, helps: impl IntoIterator<Item = String>) -> Self {
         self.help.extend(helps);
         self
     }
 
-    /// The bytes of `source` that the problem is about; none if it is about the scene as a whole.
+    /// The bytes of `source` that the problem refers to; none for the scene as a whole.
     pub fn span(&self, source: &Source) -> Option<Range<usize>> {
         match &self.at {
             SourcePlace::Scene => None,
@@ -106,10 +106,10 @@ fn first_line(text: &str, span: Range<usize>) -> Range<usize> {
     start..text[start..end].find('\n').map_or(end, |newline| start + newline)
 }
 
-/// A scene that cannot be used: all that is wrong with it.
+/// A scene that cannot be used, with all its problems.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SceneError {
-    /// The text that the problems are about.
+    /// The text that the problems refer to.
     pub source: Source,
     /// The problems, in the order of the text.
     pub problems: Vec<Problem>,

@@ -13,12 +13,12 @@ pub struct RecordDescription {
     /// Fields that are recorded beside the positions, such as `"pressure"`, `"von_mises"` or `"velocity.x"`.
     #[serde(default)]
     pub fields: Vec<String>,
-    /// Time between two checkpoints \[s\]; without it the run leaves one at its end, or where it is
+    /// Time between two checkpoints \[s\]; without it the run writes one at its end, or when it is
     /// interrupted.
     #[serde(default)]
     pub checkpoint_every: Option<f64>,
-    /// Whether a run that is complete leaves a checkpoint, from which `meshless resume --until` goes further.
-    /// An interrupted run leaves one in any case.
+    /// Whether a completed run writes a checkpoint, from which `meshless resume --until` continues. An
+    /// interrupted run always writes one.
     #[serde(default = "yes")]
     pub checkpoint_at_end: bool,
     /// Whether each frame is also written as ParaView files, `<scene>_<body>_<frame>.vtu`, with `<scene>.pvd`

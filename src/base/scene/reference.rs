@@ -10,11 +10,11 @@ use super::Scene;
 /// A parameter of a plugin, material, condition, or a field of a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Parameter {
-    /// Name as a scene writes it.
+    /// Name in a scene.
     pub name: String,
-    /// Type, in the words of a scene.
+    /// Type, in the terms of a scene.
     pub kind: String,
-    /// Value where a scene does not give one, as a scene would write it.
+    /// Default value in the notation of a scene, if there is one.
     pub default: Option<String>,
     /// Description, with its unit.
     pub doc: String,
@@ -27,8 +27,8 @@ pub fn parameters<T: JsonSchema>() -> Vec<Parameter> {
     Described::of::<T>().parameters()
 }
 
-/// A type with its schema, from which both its parameters and its documentation follow: what is generic is
-/// compiled once a type.
+/// A type with its schema, from which its parameters and its documentation follow. Only the schema is
+/// generic, so that the rest is compiled once.
 pub struct Described {
     name: String,
     schema: Value,
@@ -89,7 +89,7 @@ fn docs_of(name: &str, schema: &Value) -> Vec<TypeDoc> {
     docs
 }
 
-/// The reference of everything in a scene that is not found in a registry, as Markdown.
+/// The reference of the scene language without registered items, as Markdown.
 pub fn schema_markdown() -> String {
     let section = |TypeDoc { name, doc, body, .. }| {
         if body.is_empty() { format!("## {name}\n\n{doc}\n") } else { format!("## {name}\n\n{doc}\n{body}") }
@@ -104,7 +104,7 @@ impl<'a> Definitions<'a> {
         self.0?.get(name)
     }
 
-    /// The schema that a reference stands for, or the schema itself.
+    /// The schema that a reference refers to, or the schema itself.
     fn resolve<'b>(&self, schema: &'b Value) -> &'b Value
     where
         'a: 'b,
@@ -158,7 +158,7 @@ fn fields(schema: &Value, definitions: &Definitions) -> Vec<Parameter> {
     properties(schema).into_iter().flatten().map(parameter).collect()
 }
 
-/// The type of a value in the words of a scene.
+/// The type of a value in the terms of a scene.
 fn kind(schema: &Value, definitions: &Definitions) -> String {
     if let Some(name) = reference(schema) {
         let definition = definitions.get(&name).unwrap_or(&Value::Null);
@@ -235,7 +235,7 @@ fn variants(schema: &Value) -> Option<Vec<(String, Option<&Value>)>> {
     Some(variants)
 }
 
-/// A value as a scene writes it.
+/// A value in the notation of a scene.
 fn written(value: &Value, schema: &Value, definitions: &Definitions) -> String {
     let schema = definitions.resolve(schema);
     match value {

@@ -12,7 +12,7 @@ pub(super) fn unknown_body(scene: &Scene, name: &str) -> Option<(String, Vec<Str
     scene.body(name).is_none().then(|| unknown("body", name, &names))
 }
 
-/// Problem of a name that may stand for several bodies.
+/// Message and help for a name, possibly with a star, that matches no body.
 pub(super) fn unknown_bodies(scene: &Scene, name: &str) -> Option<(String, Vec<String>)> {
     match name.strip_suffix(ANY) {
         None => unknown_body(scene, name),

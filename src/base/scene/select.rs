@@ -20,16 +20,16 @@ pub struct Select {
     /// The outermost layer of each body on this side.
     #[serde(default)]
     pub face: Option<Face>,
-    /// The one particle, of those that meet the other criteria, that is nearest to this point \[m\].
+    /// Of the particles that meet the other criteria, the one nearest to this point \[m\].
     #[serde(default)]
     pub nearest: Option<Vec3>,
-    /// Of loads, and of probes of fields: that part of the surface of the body.
+    /// For loads and probes of fields: this part of the surface of the body.
     #[serde(default)]
     pub surface: Option<SurfacePart>,
 }
 
 impl Select {
-    /// Whether its particles may be of the body with this name.
+    /// Whether the selection can contain particles of the body with this name.
     pub fn means(&self, body: &str) -> bool {
         self.body.as_ref().is_none_or(|name| is_meant(name, body))
     }
@@ -39,7 +39,7 @@ impl Select {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum SurfacePart {
-    /// All of it.
+    /// The whole surface.
     All,
     /// The parts that face away from the body.
     Outer,
@@ -47,24 +47,24 @@ pub enum SurfacePart {
     Inner,
     /// The part that lies on the surface of this shape, such as the cylinder with which a hole was cut.
     Of(Shape),
-    /// The part that faces this direction, within 45 degrees.
+    /// The part whose normal is within 45 degrees of this direction.
     Facing(Vec3),
 }
 
 /// A side of a body along a coordinate axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Face {
-    /// The side of smallest x.
+    /// The side of minimum x.
     MinX,
-    /// The side of largest x.
+    /// The side of maximum x.
     MaxX,
-    /// The side of smallest y.
+    /// The side of minimum y.
     MinY,
-    /// The side of largest y.
+    /// The side of maximum y.
     MaxY,
-    /// The side of smallest z.
+    /// The side of minimum z.
     MinZ,
-    /// The side of largest z.
+    /// The side of maximum z.
     MaxZ,
 }
 

@@ -1,7 +1,7 @@
-//! Frequent slips of those who write a scene for the first time: units, expressions without quotes, decimal
-//! commas, everyday names of shapes.
+//! Frequent mistakes in first scenes: units, expressions without quotes, decimal commas, everyday names of
+//! shapes.
 
-/// Units that people write after numbers, with the power of ten of the SI unit.
+/// Units that users write after numbers, with the exponent of ten relative to the SI unit.
 const UNITS: [(&str, i32); 33] = [
     ("m", 0),
     ("mm", -3),
@@ -38,8 +38,8 @@ const UNITS: [(&str, i32); 33] = [
     ("%", -2),
 ];
 
-/// Everyday names and what scenes call the thing.
-const SYNONYMS: [(&str, &str); 20] = [
+/// Everyday names and the names in scenes.
+const SYNONYMS: [(&str, &str); 21] = [
     ("disk", "Sphere"),
     ("disc", "Sphere"),
     ("circle", "Sphere"),
@@ -53,7 +53,8 @@ const SYNONYMS: [(&str, &str); 20] = [
     ("halfplane", "HalfSpace"),
     ("pipe", "Tube"),
     ("annulus", "Ring"),
-    ("rotation", "Turn"),
+    ("rotation", "RotationRate"),
+    ("turn", "RotationRate"),
     ("support", "Fix"),
     ("clamp", "Fix"),
     ("linearelastic", "StVenantKirchhoff"),
@@ -62,14 +63,14 @@ const SYNONYMS: [(&str, &str); 20] = [
     ("liquid", "Fluid"),
 ];
 
-/// The known name for an everyday one.
+/// The known name for an everyday name.
 pub(super) fn synonym<'a, S: AsRef<str>>(name: &str, known: &'a [S]) -> Option<&'a str> {
     let plain: String = name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect();
     let (_, meant) = SYNONYMS.iter().find(|(word, _)| *word == plain)?;
     known.iter().map(AsRef::as_ref).find(|known| known == meant)
 }
 
-/// Help where `rest` follows a complete number, the last thing in `before`.
+/// Help if text, `rest`, follows directly on a complete number at the end of `before`.
 pub(super) fn after_number(before: &str, rest: &str) -> Option<String> {
     let before = before.trim_end();
     let start = before.rfind(|c: char| !(c.is_alphanumeric() || matches!(c, '.' | '_' | '-' | '+')));

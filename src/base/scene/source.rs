@@ -13,7 +13,7 @@ pub struct Source {
     pub name: String,
     /// The text.
     pub text: String,
-    /// Path and value of each replacement that the text has gone through.
+    /// Path and value of each override of the text.
     pub(super) settings: Vec<(String, String)>,
 }
 

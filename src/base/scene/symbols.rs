@@ -17,17 +17,17 @@ pub(super) struct Symbols {
 }
 
 thread_local! {
-    /// serde hands nothing down to the types that it reads: the names are here while a scene is being read.
+    /// serde passes no context to the types that it reads, so that the names are here while a scene is read.
     static CURRENT: RefCell<Arc<Symbols>> = RefCell::default();
 }
 
 impl Symbols {
-    /// The names of the scene that is being read on this thread; none outside of it.
+    /// The names of the scene that is being read on this thread; none while no scene is read.
     pub fn current() -> Arc<Self> {
         CURRENT.with_borrow(Arc::clone)
     }
 
-    /// Reads something with these names.
+    /// Calls `read` with these names.
     pub fn during<T>(self: &Arc<Self>, read: impl FnOnce() -> T) -> T {
         let before = CURRENT.replace(Arc::clone(self));
         let result = read();

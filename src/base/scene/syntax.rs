@@ -1,4 +1,5 @@
-//! The grammar of RON: text -> tree. The first error ends it, since what follows cannot be trusted.
+//! The grammar of RON, from text to tree. Reading ends at the first error, since the text after it cannot be
+//! interpreted.
 
 use std::ops::Range;
 
@@ -6,10 +7,10 @@ use super::Problem;
 use super::slips;
 use super::tree::{Node, NodeKind, StructField, Word};
 
-/// Deeper nesting than any scene has is refused, so that no text can exhaust the stack.
+/// Maximum nesting depth, beyond that of any scene, so that no text can exhaust the stack.
 const MAX_DEPTH: usize = 100;
 
-/// Reads one value that fills `text`; all places are counted from `offset`.
+/// Reads one value that fills `text`; all positions are counted from `offset`.
 pub(super) fn read(text: &str, offset: usize) -> Result<Node, Problem> {
     let mut reader = Reader { text, offset, at: 0, depth: 0, last_text: 0..0 };
     reader.skip_attributes()?;
@@ -49,7 +50,7 @@ impl<'a> Reader<'a> {
         Problem::at_span(self.span(range), message)
     }
 
-    /// The length in bytes of the leading characters that fit.
+    /// The length in bytes of the leading characters that satisfy `fits`.
     pub(super) fn run(&self, fits: impl Fn(char) -> bool) -> usize {
         self.rest().find(|c| !fits(c)).unwrap_or(self.rest().len())
     }
@@ -105,7 +106,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// `#![enable(...)]` at the start is accepted: what it can ask for is always on.
+    /// `#![enable(...)]` at the start is accepted: the extensions it can enable are always on.
     fn skip_attributes(&mut self) -> Result<(), Problem> {
         self.skip_space()?;
         while self.rest().starts_with("#![") {
@@ -254,7 +255,7 @@ impl<'a> Reader<'a> {
         Ok(entries)
     }
 
-    /// After an entry of the bracket at `open` comes neither a comma nor its end.
+    /// The problem of an entry in the bracket at `open` that neither a comma nor the closing bracket follows.
     fn not_separated(&self, open: usize, close: char) -> Problem {
         let bracket = &self.text[open..open + 1];
         let text = self.last_text.clone();
@@ -274,7 +275,7 @@ impl<'a> Reader<'a> {
         problem.helps(slips::after_number(&self.text[..self.at], self.rest()))
     }
 
-    /// The bracket at `open` is still open where the text or an outer bracket ends.
+    /// The problem of a bracket at `open` that is not closed before the text or an outer bracket ends.
     fn unclosed(&self, open: usize, close: char) -> Problem {
         let bracket = &self.text[open..open + 1];
         let problem = self.problem(open..open + 1, format!("this `{bracket}` is never closed"));

@@ -1,4 +1,4 @@
-//! Functions that a scene gives by points: `tables: { "pull": (file: "pull.csv") }`, used as `"1e5*pull(t)"`.
+//! Tabulated functions of a scene: `tables: { "pull": (file: "pull.csv") }`, used as `"1e5*pull(t)"`.
 
 use std::path::Path;
 
@@ -7,12 +7,12 @@ use serde::{Deserialize, Serialize};
 
 use super::Problem;
 
-/// A function of one variable by points, interpolated linearly between them and constant beyond the first and
-/// the last. Expressions call it by its name: `"1e5*pull(t)"`.
+/// A tabulated function of one variable, interpolated linearly between its points and constant beyond the
+/// first and the last. Expressions call it by its name: `"1e5*pull(t)"`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Table {
-    /// CSV file with a header, relative to the scene. Either this or `points`.
+    /// CSV file with a header; its path is relative to the scene. Either this or `points`.
     #[serde(default)]
     pub file: Option<String>,
     /// Column of the file with the variable; without it the first one.
@@ -27,10 +27,10 @@ pub struct Table {
 }
 
 impl Table {
-    /// The function; files are found in `folder`, and `path` is the place of the table in the scene.
+    /// The function. The file is relative to `folder`, and `path` is the path of the table in the scene.
     ///
     /// # Errors
-    /// The file cannot be read, or the points are no function.
+    /// The file cannot be read, or the points do not define a function.
     pub(super) fn interpolation(&self, folder: &Path, path: &str) -> Result<Interpolation, Problem> {
         let at = |field: &str| format!("{path}.{field}");
         let (points, at) = match (&self.file, self.points.is_empty()) {
@@ -115,7 +115,7 @@ impl Table {
     }
 }
 
-/// Points that are interpolated linearly; at least one, the variable increasing.
+/// Piecewise linear interpolation; at least one point, the variable increasing.
 #[derive(Debug)]
 pub(super) struct Interpolation {
     points: Vec<(f64, f64)>,

@@ -1,10 +1,10 @@
-//! Faults of texts within a scene, such as expressions, on their way through serde, whose errors carry only
-//! text.
+//! Problems of texts within a scene, such as expressions, written as messages of serde, whose errors carry
+//! only text.
 
 use std::fmt;
 use std::ops::Range;
 
-/// A fault at some bytes of a text value.
+/// A problem at some bytes of a text value.
 pub(super) struct TextFault<'a> {
     pub bytes: Range<usize>,
     pub message: &'a str,
@@ -22,7 +22,7 @@ impl fmt::Display for TextFault<'_> {
 }
 
 impl<'a> TextFault<'a> {
-    /// The fault that was written as a message of serde; none if the message is another one.
+    /// The problem that was written as a message of serde; none for any other message.
     pub fn read(message: &'a str) -> Option<Self> {
         let parts: Vec<&str> = message.split(MARK).collect();
         let &["", start, end, message, help] = parts.as_slice() else { return None };

@@ -9,20 +9,20 @@ use serde::{Deserialize, Serialize};
 pub struct Time {
     /// Time at which the run ends \[s\]; it starts at 0.
     pub end: f64,
-    /// How the time step is chosen.
+    /// Choice of the time step.
     #[serde(default)]
     pub step: StepRule,
-    /// Largest number of sub-steps that solids and rigid bodies beside a fluid take in one step of the fluid;
-    /// they take as many as their own stability limit requires. 1: all share one step.
+    /// Maximum number of sub-steps that solids and rigid bodies take in one step of a fluid; they take as
+    /// many as their own stability limit requires. 1: all share one step.
     #[serde(default = "default_sub_steps")]
     pub sub_steps: u32,
-    /// The run ends before `end` when a probe passes a value: the first of these that is met.
+    /// Stop conditions: the run ends before `end` when the first of them is met.
     #[serde(default)]
     pub stop_when: Vec<StopWhen>,
 }
 
-/// A value of a probe at which the run ends: at its first sample beyond the value after one that is not
-/// beyond it. A run that is resumed goes on to the next passage.
+/// A stop condition: the run ends at the first sample of a probe beyond a value that follows one not beyond
+/// it. A resumed run continues to the next crossing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StopWhen {
@@ -43,18 +43,18 @@ fn default_sub_steps() -> u32 {
     200
 }
 
-/// How the time step is chosen.
+/// Choice of the time step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename = "Step")]
 pub enum StepRule {
-    /// The smallest of all stability limits, times a factor.
+    /// The minimum of all stability limits, times a factor.
     Adaptive {
-        /// Factor on the stability limit \[-\]; above 1 leaves the range in which the limits are known to be
-        /// safe.
+        /// Factor on the stability limit \[-\]; above 1 the step is outside the range in which the limits are
+        /// known to be stable.
         #[serde(default = "one")]
         factor: f64,
     },
-    /// The same step throughout \[s\].
+    /// A constant time step \[s\].
     Fixed(f64),
 }
 

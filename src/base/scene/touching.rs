@@ -1,4 +1,4 @@
-//! Which bodies of a scene have a contact.
+//! The pairs of bodies of a scene that have a contact.
 
 use super::Scene;
 
@@ -17,7 +17,7 @@ impl TouchingPairs {
         self.partners(body).next().is_some()
     }
 
-    /// The bodies that a body has a contact with; itself if it has one with itself.
+    /// The bodies with which a body has a contact; itself if it has contact with itself.
     pub fn partners<'a>(&'a self, body: &'a str) -> impl Iterator<Item = &'a str> {
         self.0.iter().filter_map(move |(one, other)| match () {
             () if one == body => Some(other.as_str()),

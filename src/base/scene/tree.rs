@@ -1,4 +1,4 @@
-//! A scene text as a tree of values that know their places in the text.
+//! A scene text as a tree of values with their positions in the text.
 
 use std::ops::Range;
 
@@ -32,8 +32,8 @@ pub(super) enum NodeKind {
     Tuple(Vec<Node>),
     List(Vec<Node>),
     Map(Vec<(Node, Node)>),
-    /// `content` is where the characters between the quotes start; it is `None` where escapes shift the
-    /// places.
+    /// `content` is the position of the first character between the quotes; it is `None` if escapes shift the
+    /// positions.
     Text {
         value: String,
         content: Option<usize>,
@@ -65,7 +65,7 @@ impl Node {
         }
     }
 
-    /// The fields; none for `()`, for a bare word and for what has no fields.
+    /// The fields; empty for values without fields, such as `()` or a bare word.
     pub fn fields(&self) -> &[StructField] {
         match &self.kind {
             NodeKind::Fields(fields) => fields,

@@ -28,7 +28,7 @@ pub enum Lattice {
         #[serde(default = "default_fitting")]
         iterations: u32,
     },
-    /// Irregular: random points that keep a least distance, moved to the centroids of their Voronoi cells
+    /// Irregular: random points that keep a minimum distance, moved to the centroids of their Voronoi cells
     /// (Lloyd's method). Every particle has the volume of its own cell.
     Relaxed {
         /// Number from which the random points are drawn: the same seed gives the same particles.

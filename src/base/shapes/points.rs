@@ -27,7 +27,7 @@ pub(super) fn read(
     let full = folder.join(file);
     let shown = full.display().to_string();
     let error = |kind| FillError::new(format!("{path}.file"), kind);
-    let text = files::read(&full, files::LARGEST_GEOMETRY)
+    let text = files::read(&full, files::MAX_GEOMETRY)
         .and_then(|bytes| String::from_utf8(bytes).map_err(std::io::Error::other))
         .map_err(|source| error(FillErrorKind::File { file: shown.clone(), source }))?;
     // Excel writes a byte-order mark in UTF-8.

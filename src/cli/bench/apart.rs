@@ -1,13 +1,13 @@
-//! A measurement in a process of its own: its memory is its own, and no earlier case has shaped the heap.
+//! A measurement in a process of its own, so that its memory does not depend on earlier cases.
 
 use std::process::{Command, Stdio};
 
 use super::super::failure::CommandFailure;
 use super::measure::{BenchSetUp, Measurement};
 
-/// Calls this program with the one set-up and reads its measurement.
+/// Runs one set-up in a new process of this program and reads its measurement.
 pub fn take(set_up: &BenchSetUp<'_>, instructions: Option<&str>) -> Result<Measurement, CommandFailure> {
-    let BenchSetUp { case, particles, ranks, threads, least } = *set_up;
+    let BenchSetUp { case, particles, ranks, threads, duration } = *set_up;
     let failed = |error: &dyn std::fmt::Display| CommandFailure::Run(format!("{}: {error}", case.name));
     let program = std::env::current_exe().map_err(|error| failed(&error))?;
     let mut command = match ranks {
@@ -23,7 +23,7 @@ pub fn take(set_up: &BenchSetUp<'_>, instructions: Option<&str>) -> Result<Measu
         .args(["--particles", &particles.to_string()])
         .args(["--ranks", &ranks.to_string()])
         .args(["--threads", &threads.to_string()])
-        .args(["--seconds", &least.as_secs_f64().to_string()])
+        .args(["--seconds", &duration.as_secs_f64().to_string()])
         .args(instructions.map(|path| format!("--instructions={path}")))
         .stderr(Stdio::inherit())
         .output()

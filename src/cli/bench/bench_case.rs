@@ -1,4 +1,4 @@
-//! The benchmark cases: scenes at any number of particles.
+//! The benchmark cases: scenes with a selectable number of particles.
 
 use anyhow::Result;
 use meshless_validation::Template;
@@ -12,17 +12,17 @@ pub struct BenchCase {
     scene: (&'static str, &'static str),
     /// The spacing for a number of particles, m.
     spacing: fn(f64) -> f64,
-    /// Values of the scene that make this case out of it.
+    /// Overrides of the scene that define this case.
     set: &'static [(&'static str, BenchValue)],
 }
 
-/// A value of a scene.
+/// A value of an override.
 enum BenchValue {
-    /// As it stands.
+    /// The given text.
     Text(&'static str),
     /// The spacing.
     Spacing,
-    /// A tank whose walls have four layers of particles, in as many dimensions.
+    /// The size of a tank whose walls have four layers of particles, in this number of dimensions.
     Tank(usize),
 }
 
@@ -50,7 +50,7 @@ impl BenchValue {
 }
 
 impl BenchCase {
-    /// The scene with about that many particles that move.
+    /// The scene with approximately this number of moving particles.
     pub fn scene(&self, particles: usize) -> Result<Template> {
         let (path, text) = self.scene;
         let spacing = (self.spacing)(particles as f64);
@@ -90,8 +90,8 @@ fn square(particles: f64) -> f64 {
     1.0 / particles.sqrt().round()
 }
 
-/// Spacing in the channel of abrasive flow: a whole part of that of the scene, whose bodies then leave room
-/// between them.
+/// Spacing in the channel of abrasive flow, m: an integer fraction of that of the scene, so that the gaps
+/// between the bodies remain.
 fn channel(particles: f64) -> f64 {
     let (usual, area) = (2.0e-6, 2.8e-8);
     usual / (usual / (area / particles).sqrt()).round().max(1.0)

@@ -1,4 +1,4 @@
-//! The machine and the program that a measurement belongs to.
+//! The machine and the program of a measurement.
 
 use meshless_engine::parallel::instruction_path;
 use serde::{Deserialize, Serialize};

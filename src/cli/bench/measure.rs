@@ -15,7 +15,7 @@ use super::super::ranks::together;
 use super::bench_case::BenchCase;
 use super::machine;
 
-/// Steps before the clock starts: lists and buffers have their size then.
+/// Steps before the timing, in which lists and buffers reach their size.
 const WARM_UP: u64 = 3;
 
 /// The measurement to carry out.
@@ -29,8 +29,8 @@ pub struct BenchSetUp<'a> {
     pub ranks: u16,
     /// Threads of each.
     pub threads: u16,
-    /// Wall time to be filled.
-    pub least: Duration,
+    /// Minimum wall time of the measurement.
+    pub duration: Duration,
 }
 
 /// Result of a measurement.
@@ -42,30 +42,31 @@ pub struct Measurement {
     pub particles: usize,
     /// Mean number of neighbours.
     pub neighbors: f64,
-    /// Ranks, each with that many threads.
+    /// Number of ranks, each with `threads` threads.
     pub ranks: u16,
-    /// Threads.
+    /// Number of threads of a rank.
     pub threads: u16,
-    /// Steps that were timed.
+    /// Number of timed steps.
     pub steps: u64,
-    /// Sub-steps of stiff bodies in each of them; none where all move by one clock.
+    /// Sub-steps of stiff bodies in each of them; none if all bodies share one step.
     pub sub_steps: Option<f64>,
-    /// Their wall time, s.
+    /// Wall time of the timed steps, s.
     pub seconds: f64,
-    /// Share of the threads' time in which they ran: below one where other programs took processors away.
-    /// None where the system does not tell.
+    /// Fraction of the time of the threads in which they ran: below one if other programs used the
+    /// processors. None if the system does not report it.
     pub busy: Option<f64>,
     /// Particles times steps per second.
     pub particle_steps_per_second: f64,
     /// Directed pairs times steps per second.
     pub directed_pairs_per_second: f64,
-    /// Growth of the program while it was built, over particles, B; none where the system does not tell.
+    /// Growth of the memory of the program while the simulation was built, per particle, B; none if the
+    /// system does not report it.
     pub bytes_per_particle: Option<f64>,
     /// Exchanges with other ranks in a step.
     pub exchanges_per_step: f64,
     /// Data received by a rank in a step, B.
     pub bytes_per_step: f64,
-    /// From the scene to the end of the first step, s.
+    /// Time from reading the scene to the end of the first step, s.
     pub first_step_after: f64,
     /// Time of every system, in the order of the step, s.
     pub systems: Vec<SystemTime>,
@@ -93,7 +94,7 @@ impl Measurement {
     }
 
     fn take_here(set_up: &BenchSetUp<'_>, registry: &Registry) -> Result<Self, CommandFailure> {
-        let BenchSetUp { case, particles, ranks, threads, least } = *set_up;
+        let BenchSetUp { case, particles, ranks, threads, duration } = *set_up;
         let failed = |error: &dyn std::fmt::Display| CommandFailure::Run(format!("{}: {error}", case.name));
         let before = resident_bytes();
         let begun = Instant::now();
@@ -108,7 +109,7 @@ impl Measurement {
         let (first, timers, short) = (sim.clock().step, timers(&sim), short_steps(&sim));
         let (processor, traffic) = (processor_seconds(), ranks::traffic());
         let begun = Instant::now();
-        while ranks::any(begun.elapsed() < least) || sim.clock().step == first {
+        while ranks::any(begun.elapsed() < duration) || sim.clock().step == first {
             sim.step().map_err(|error| failed(&error))?;
         }
         let seconds = begun.elapsed().as_secs_f64();
@@ -160,8 +161,8 @@ fn since(before: Vec<Duration>, sim: &Simulation) -> Vec<SystemTime> {
         .collect()
 }
 
-/// Number of particles of the bodies that have neighbours, and the mean number of these: walls are not
-/// counted, and rigid bodies where there are others.
+/// Number of particles of the bodies that have neighbours, and their mean number of neighbours. Walls are not
+/// counted, nor are rigid bodies if there are other bodies.
 fn moving(sim: &Simulation) -> Result<(usize, f64), CommandFailure> {
     let (mut sum, mut particles) = (0.0, 0);
     for k in 0..sim.world().bodies().len() {

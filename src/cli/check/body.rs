@@ -1,4 +1,4 @@
-//! What `check` tells of each body.
+//! The report of `check` on each body.
 
 use meshless_engine::plugin::{BodyKind, Registry};
 use meshless_engine::scene::{Dimension, Scene};
@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::cli::failure::CommandFailure;
 use crate::cli::neighbors::NeighborCounts;
 
-/// A body, as far as it matters for cost and accuracy.
+/// The properties of a body that determine cost and accuracy.
 #[derive(Clone, Debug, Serialize)]
 pub struct BodyReport {
     /// Name.
@@ -31,7 +31,7 @@ pub struct BodyReport {
     pub sound_speed: Option<f64>,
     /// Particles across the smallest side of the box around the body.
     pub across: f64,
-    /// Whether its material flows plastically.
+    /// Whether its material is plastic.
     pub plastic: bool,
     /// Whether conditions hold or drive all of it along all axes.
     #[serde(skip)]
@@ -44,7 +44,7 @@ pub struct BodyReport {
 }
 
 impl BodyReport {
-    /// Looks at all bodies.
+    /// Reports on all bodies.
     pub fn all(scene: &Scene, sim: &Simulation, registry: &Registry) -> Result<Vec<Self>, CommandFailure> {
         (0..scene.bodies.len()).map(|k| Self::of(k, scene, sim, registry)).collect()
     }
@@ -84,19 +84,19 @@ impl BodyReport {
                 && view.read::<PlasticStrain>().is_ok()
                 && has_plasticity(scene, &body.material),
             driven: is_driven(&view.read::<Mobility>().map_err(failed)?[rows], scene.dimension),
-            neighbours: count.map(|count| (count.mean, count.least, count.most)),
+            neighbours: count.map(|count| (count.mean, count.min, count.max)),
             plugins: plugins.map(|item| item.name().to_owned()).collect(),
         })
     }
 }
 
-/// Whether no force moves any of these particles.
+/// Whether all of these particles are constrained along all axes.
 fn is_driven(mobility: &[Mobility], dimension: Dimension) -> bool {
     mobility.iter().all(|of| of.0.x == 0.0 && of.0.y == 0.0 && (dimension == Dimension::Two || of.0.z == 0.0))
 }
 
-/// Columns are those of all bodies of a formulation: whether the material itself has a flow stress stands in
-/// its text.
+/// Whether the material is plastic, from its text: columns do not tell, since all bodies of a formulation
+/// share them.
 fn has_plasticity(scene: &Scene, material: &str) -> bool {
     scene.materials.get(material).is_some_and(|item| {
         let text = item.text();

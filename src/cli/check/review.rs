@@ -1,4 +1,4 @@
-//! What a colleague would say of a scene before it is run.
+//! Notes of `check` on the set-up of a scene.
 
 use meshless_engine::notation::{count, number};
 use meshless_engine::plugin::BodyKind;
@@ -9,11 +9,11 @@ use super::body::BodyReport;
 use super::support;
 use super::trial::TrialSteps;
 
-/// Particles across a solid below which its bending is too stiff.
+/// Number of particles across a solid below which its bending is too stiff.
 const ACROSS: f64 = 4.0;
-/// Sub-steps of solids in a step of the fluid whose cost dominates.
+/// Number of sub-steps of solids in a step of the fluid above which their cost dominates.
 const MANY_SUB_STEPS: u32 = 50;
-/// Steps in which sound passes a few particles.
+/// Steps in which a sound wave travels a few spacings.
 const STEPS_OF_SOUND: f64 = 4.0;
 
 /// Notes on the scene; they do not keep it from running.

@@ -1,4 +1,4 @@
-//! Flows that want a wider support than the default one.
+//! Notes on flows that need a larger kernel support than the default.
 
 use meshless_engine::formulations::fluid::{FlowCloud, FluidState, Group};
 use meshless_engine::glam::DVec3;

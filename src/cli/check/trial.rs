@@ -1,4 +1,4 @@
-//! Some steps in memory, to measure the speed with.
+//! Trial steps in memory, to measure the speed.
 
 use std::time::{Duration, Instant};
 
@@ -10,7 +10,7 @@ use crate::cli::text::{counted, duration};
 
 /// Wall time spent on trial steps.
 const TRIAL: Duration = Duration::from_millis(500);
-/// Largest number of trial steps.
+/// Maximum number of trial steps.
 const TRIAL_STEPS: u64 = 50;
 
 /// Result of some trial steps.
@@ -23,7 +23,7 @@ pub struct TrialSteps {
     pub limit: String,
 }
 
-/// A number of steps, in full where it is one that a run can take.
+/// A number of steps as text, in full if a run can take so many.
 fn steps(number: f64) -> String {
     if number < 1e9 { count(number as u64, "step") } else { format!("{} steps", quantity_to(number, "1", 2)) }
 }

@@ -7,8 +7,8 @@ pub struct SweepCase {
     pub settings: Vec<(String, String)>,
 }
 
-/// More runs than this are a slip more often than not.
-const MOST: usize = 10_000;
+/// Maximum number of runs: more are most likely a mistake.
+const MAX_RUNS: usize = 10_000;
 
 /// Every combination of the values, the last setting changing fastest.
 ///
@@ -24,8 +24,8 @@ pub fn combinations(settings: &[(String, String)]) -> Result<Vec<SweepCase>, Str
         if values.iter().any(|value| value.is_empty()) {
             return Err(format!("a value of `{path}` is empty"));
         }
-        if cases.len() * values.len() > MOST {
-            return Err(format!("a sweep has at most {MOST} runs"));
+        if cases.len() * values.len() > MAX_RUNS {
+            return Err(format!("a sweep has at most {MAX_RUNS} runs"));
         }
         cases =
             cases.iter().flat_map(|case| values.iter().map(move |value| case.with(path, value))).collect();
@@ -60,7 +60,7 @@ pub fn short(path: &str) -> &str {
     path.strip_prefix("parameters.").unwrap_or(path)
 }
 
-/// The parts between commas that stand in no brackets and no quotes.
+/// The parts between commas outside of brackets and quotes.
 fn split(values: &str) -> Vec<&str> {
     let mut parts = Vec::new();
     let (mut depth, mut quoted, mut start) = (0i32, false, 0);

@@ -1,4 +1,4 @@
-//! What the runs of a sweep have come to, side by side.
+//! Results of the runs of a sweep, side by side.
 
 use std::path::{Path, PathBuf};
 
@@ -22,7 +22,7 @@ impl SweepRow {
         Self { settings: case.settings.clone(), summary }
     }
 
-    /// Whether the run could not go on.
+    /// Whether the run failed.
     pub fn is_failed(&self) -> bool {
         matches!(self.summary.outcome, Outcome::Failed(_))
     }
@@ -78,7 +78,7 @@ pub fn text(rows: &[SweepRow]) -> String {
     format!("{}\n{}", runs.render(), probes.render())
 }
 
-/// Probe and column of all series, in the order in which they come first.
+/// Probe and column of all series, in the order of their first occurrence.
 fn columns(rows: &[SweepRow]) -> Vec<(String, String)> {
     let mut columns = Vec::new();
     for row in rows {
@@ -97,7 +97,7 @@ fn columns(rows: &[SweepRow]) -> Vec<(String, String)> {
 /// Writes `sweep.csv`: a row for every run.
 ///
 /// # Errors
-/// The file is there and may not be replaced, or cannot be written.
+/// The file exists and may not be replaced, or cannot be written.
 pub fn write(folder: &Path, existing: Existing, rows: &[SweepRow]) -> Result<PathBuf, CommandFailure> {
     let file = folder.join("sweep.csv");
     let columns = columns(rows);

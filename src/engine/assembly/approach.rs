@@ -19,8 +19,8 @@ const FLAT: f64 = 0.02;
 const TIMES: u32 = 400;
 /// Gap in spacings below which bodies touch from the start.
 const TOUCHING: f64 = 0.05;
-/// Least speed of the impact over the largest one that is prescribed: a tool that begins to press slowly and
-/// then gets faster causes no front.
+/// Minimum speed of the impact over the largest one that is prescribed: a tool that begins to press slowly
+/// and then gets faster causes no front.
 const SUDDEN: f64 = 0.25;
 
 /// The motion of places of bodies until they touch anything.

@@ -60,25 +60,25 @@ fn thin_support(body: &BodyPlan, held: &[bool]) -> Option<f64> {
 }
 
 fn of_clamp(body: &BodyPlan, reach: f64, sides_are_placed: bool) -> String {
-    let (least, or_side) = (least(body, reach), or_side(sides_are_placed));
+    let (thickness, or_side) = (min_thickness(body, reach), or_side(sides_are_placed));
     format!(
-        "body `{}` is clamped over less than its kernel support: it is held up to {} from the edge of the clamp; clamp at least {least} of it{or_side}",
+        "body `{}` is clamped over less than its kernel support: it is held up to {} from the edge of the clamp; clamp at least {thickness} of it{or_side}",
         body.name,
         quantity(0.5 * body.spacing, "m")
     )
 }
 
 fn of_part(body: &BodyPlan, reach: f64, sides_are_placed: bool) -> String {
-    let (least, or_side) = (least(body, reach), or_side(sides_are_placed));
+    let (thickness, or_side) = (min_thickness(body, reach), or_side(sides_are_placed));
     format!(
-        "body `{}` is held within a shape along some axes, over less than its kernel support: the support ends up to {} before the edge of the shape; hold at least {least} of it{or_side}",
+        "body `{}` is held within a shape along some axes, over less than its kernel support: the support ends up to {} before the edge of the shape; hold at least {thickness} of it{or_side}",
         body.name,
         quantity(0.5 * body.spacing, "m")
     )
 }
 
 /// The thickness of a support that the kernel does not see through, m, as text.
-fn least(body: &BodyPlan, reach: f64) -> String {
+fn min_thickness(body: &BodyPlan, reach: f64) -> String {
     quantity((reach / body.spacing).ceil() * body.spacing, "m")
 }
 

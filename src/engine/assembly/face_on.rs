@@ -21,8 +21,8 @@ const REMEDY: &str = "artificial_viscosity";
 const FULL: f64 = 0.75;
 /// Transits of waves through the bodies for which a front counts where a condition keeps moving one of them.
 const LONGEST_FRONT: f64 = 20.0;
-/// Least spacings that two faces have in common along each of their axes.
-const LEAST_COMMON: f64 = 4.0;
+/// Minimum spacings that two faces have in common along each of their axes.
+const MIN_COMMON: f64 = 4.0;
 
 /// Warns of every pair of bodies that have a contact and will meet face to face.
 pub(super) fn warn(sim: &mut SimBuilder<'_>) {
@@ -76,8 +76,8 @@ fn text([a, b]: [&BodyPlan; 2], motions: &Motions, sim: &SimBuilder<'_>) -> Opti
 }
 
 /// How long a wave takes through the thicker one of two bodies that meet, s; rigid ones have none.
-fn transit(pair: [&BodyPlan; 2], faces: &[Foremost; 2]) -> f64 {
-    let of = |(body, face): (&BodyPlan, &Foremost)| match body.kind {
+fn transit(pair: [&BodyPlan; 2], faces: &[FrontLayer; 2]) -> f64 {
+    let of = |(body, face): (&BodyPlan, &FrontLayer)| match body.kind {
         BodyKind::Solid => body.material.sound_speed().map_or(0.0, |sound| face.depth / sound),
         _ => 0.0,
     };
@@ -108,8 +108,8 @@ fn yields(own: &BodyPlan, pair: [&BodyPlan; 2], speed: f64) -> bool {
 
 /// The foremost layers of two bodies, of which the first one comes along that direction, if they are faces
 /// that meet.
-fn faces(a: &BodyPlan, b: &BodyPlan, along: DVec3, scene: &Scene) -> Option<[Foremost; 2]> {
-    let (of_a, of_b) = (Foremost::of(a, along)?, Foremost::of(b, -along)?);
+fn faces(a: &BodyPlan, b: &BodyPlan, along: DVec3, scene: &Scene) -> Option<[FrontLayer; 2]> {
+    let (of_a, of_b) = (FrontLayer::of(a, along)?, FrontLayer::of(b, -along)?);
     let spacing = a.spacing.max(b.spacing);
     let axes = along.any_orthonormal_pair();
     let across = [axes.0, axes.1].map(|axis| {
@@ -120,13 +120,13 @@ fn faces(a: &BodyPlan, b: &BodyPlan, along: DVec3, scene: &Scene) -> Option<[For
     let ahead = -of_b.at - of_a.at > 0.0;
     let plane = scene.dimension == crate::scene::Dimension::Two;
     let is_wide =
-        |(common, axis): (&f64, DVec3)| (plane && axis.z.abs() > 0.5) || *common >= LEAST_COMMON * spacing;
+        |(common, axis): (&f64, DVec3)| (plane && axis.z.abs() > 0.5) || *common >= MIN_COMMON * spacing;
     let meet = ahead && across.iter().zip([axes.0, axes.1]).all(is_wide);
     meet.then_some([of_a, of_b])
 }
 
 /// The foremost layer of a body.
-struct Foremost {
+struct FrontLayer {
     /// How far along the direction it lies, m.
     at: f64,
     /// How far along the direction the surface of the body lies, m: particles on a held side stand on it.
@@ -138,7 +138,7 @@ struct Foremost {
     spacing: f64,
 }
 
-impl Foremost {
+impl FrontLayer {
     /// The layer that is foremost along a direction, if it is a face.
     fn of(body: &BodyPlan, along: DVec3) -> Option<Self> {
         let places = || body.sites.iter().map(|site| site.position);

@@ -1,25 +1,26 @@
 //! Values that are allowed but most likely wrong units.
 
-use crate::boundaries::LARGEST_MACH;
+use crate::boundaries::MAX_MACH;
 use crate::materials::Law;
 use crate::notation::{number, quantity, quantity_to};
 use crate::plugin::{BodyPlan, SimBuilder};
 
 /// Densities of condensed matter and gases, kg/m3.
 const DENSITIES: std::ops::RangeInclusive<f64> = 1.0..=3.0e4;
-/// Largest ratio of yield stress and Young's modulus of any metal or polymer, with room.
-const LARGEST_YIELD: f64 = 0.1;
+/// Largest ratio of yield stress and Young's modulus of any metal or polymer, with a margin.
+const MAX_YIELD: f64 = 0.1;
 /// Speeds of sound in solids, from gels to diamond, m/s.
 const SOUND: std::ops::RangeInclusive<f64> = 0.01..=2.0e4;
 /// Solids from this density on are metals, rocks and ceramics, kg/m3.
 const DENSE: f64 = 3.0e3;
-/// Least speed of sound in dense solids: a hundredth of that in lead, m/s.
+/// Minimum speed of sound in dense solids: a hundredth of that in lead, m/s.
 const DENSE_SOUND: f64 = 10.0;
 /// Gravity of a centrifuge, m/s2: more is a slip of units.
-const LARGEST_GRAVITY: f64 = 5.0e3;
-/// Gravity of the Earth, with room, m/s2, under which a liquid lighter than any has a density in other units.
+const MAX_GRAVITY: f64 = 5.0e3;
+/// Gravity of the Earth, with a margin, m/s2, under which a liquid lighter than any has a density in other
+/// units.
 const EARTH: std::ops::RangeInclusive<f64> = 9.5..=10.5;
-/// Density of the lightest liquid, hydrogen, with room, kg/m3.
+/// Density of the lightest liquid, hydrogen, with a margin, kg/m3.
 const LIGHTEST_LIQUID: f64 = 50.0;
 /// Distance from the origin in spacings beyond which a double no longer tells neighbours apart well.
 const FARTHEST: f64 = 1.0e10;
@@ -27,7 +28,7 @@ const FARTHEST: f64 = 1.0e10;
 /// Warns of probably wrong units.
 pub(super) fn warn(sim: &mut SimBuilder<'_>) {
     let gravity = sim.gravity().length();
-    let of_gravity = (gravity > LARGEST_GRAVITY).then(|| {
+    let of_gravity = (gravity > MAX_GRAVITY).then(|| {
         format!("gravity is {} m/s2: check its unit, that of the Earth is 9.81 m/s2", number(gravity))
     });
     let of_bodies =
@@ -65,8 +66,7 @@ fn of_body(body: &BodyPlan) -> Vec<String> {
     }
     if let Law::Solid(law) = &body.material.law {
         let elastic = law.elastic();
-        if let Some(stress) =
-            law.initial_yield_stress().filter(|stress| *stress > LARGEST_YIELD * elastic.young)
+        if let Some(stress) = law.initial_yield_stress().filter(|stress| *stress > MAX_YIELD * elastic.young)
         {
             found.push(format!(
                 "material `{material}` yields at {}, {} times its Young's modulus of {}: check their units",
@@ -89,7 +89,7 @@ fn of_body(body: &BodyPlan) -> Vec<String> {
             ));
         }
         let speed = body.velocity.map_or(0.0, |velocity| velocity.0.length());
-        if speed > LARGEST_MACH * sound {
+        if speed > MAX_MACH * sound {
             found.push(format!(
                 "body `{name}` starts at {}, {} times the speed of sound in it ({})",
                 quantity(speed, "m/s"),

@@ -48,7 +48,7 @@ pub(super) fn place(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>
                 let way = |row: &u32| {
                     let number = *row - body.rows.start as u32;
                     let x = body.sites[number as usize].position;
-                    (number, INSIDE * way_to_side(x, face, at, body.spacing, &*region))
+                    (number, INSIDE * vector_to_side(x, face, at, body.spacing, &*region))
                 };
                 let moved: Vec<_> = rows.iter().map(way).filter(|(_, way)| *way != DVec3::ZERO).collect();
                 if moved.is_empty() {
@@ -104,7 +104,7 @@ fn is_mirrored(scene: &Scene, face: Face, at: f64, spacing: f64) -> bool {
 }
 
 /// From a particle to the side of its body, m; none where the side is not its surface.
-fn way_to_side(x: DVec3, face: Face, at: f64, spacing: f64, region: &dyn Region) -> DVec3 {
+fn vector_to_side(x: DVec3, face: Face, at: f64, spacing: f64, region: &dyn Region) -> DVec3 {
     let axis = face.outward().0;
     let way = DVec3::AXES[axis] * (at - x[axis]);
     if way.length() < spacing && region.distance(x + way).abs() < ON_SIDE * spacing {

@@ -254,7 +254,7 @@ fn a_uniform_stress_is_in_balance_beside_what_is_held() {
     }
 }
 
-/// The plastic strain of every particle of a bar over their mean, least and greatest: it is drawn by two
+/// The plastic strain of every particle of a bar over their mean, minimum and maximum: it is drawn by two
 /// sides held along their normals.
 fn spread_of_plastic_strain(formulation: &str) -> (f64, f64) {
     let text = format!(

@@ -89,7 +89,7 @@ fn place_body(body: &mut BodyPlan, held: &[Option<usize>], shapes: &[Box<dyn Reg
         }
         let region = &*shapes[held[k as usize].unwrap_or_default()];
         let places = others().map(|other| other.1);
-        let way = way_to_edge(targets[row], places, nearest, region)
+        let way = vector_to_edge(targets[row], places, nearest, region)
             .map(|way| way.clamp_length_max(FARTHEST * body.spacing));
         let length = way.map_or(1.0, |way| way.length() / body.spacing);
         body.carried.push((k, (0.5 - length).max(0.0)));
@@ -105,11 +105,11 @@ fn place_body(body: &mut BodyPlan, held: &[Option<usize>], shapes: &[Box<dyn Reg
     }
 }
 
-/// From a held particle to the edge of what is held, m; none if that has no direction. The nearest of the
-/// others is so far away, m.
+/// Vector from a held particle to the edge of the held part, m; none if it has no direction. The nearest of
+/// the others is so far away, m.
 ///
 /// The edge is the plane through the places where the ways to the nearest of the others leave the shape.
-fn way_to_edge(
+fn vector_to_edge(
     x: DVec3,
     others: impl Iterator<Item = DVec3> + Clone,
     nearest: f64,

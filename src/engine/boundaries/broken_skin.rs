@@ -14,12 +14,12 @@ use crate::plugin::{Selection, SetupError, SimBuilder};
 use crate::schedule::{Shared, Step, StepError};
 
 /// A load on particles of bodies whose skins are broken.
-pub(super) struct OnceBroken<L> {
+pub(super) struct BrokenSkinLoad<L> {
     law: L,
     skins: Shared<SkinLoads>,
 }
 
-impl<L: LoadLaw> LoadLaw for OnceBroken<L> {
+impl<L: LoadLaw> LoadLaw for BrokenSkinLoad<L> {
     fn forces(&self, k: usize, part: &Part, step: &Step<'_>, out: &mut Vec<DVec3>) -> Result<(), StepError> {
         if step.resources.of(self.skins).act_on(part.body) {
             out.clear();
@@ -45,7 +45,7 @@ pub(super) fn apply<L: LoadLaw>(
     let parts = selection.parts.iter().filter(|(id, _)| sim.body(*id).can_fail()).cloned();
     let fragile = Selection { parts: parts.collect() };
     if !fragile.is_empty() {
-        let law = OnceBroken { law: law(&fragile, sim)?, skins };
+        let law = BrokenSkinLoad { law: law(&fragile, sim)?, skins };
         load::apply(label, law, &fragile, sim, |system| system.reads::<crate::world::DeformationGradient>());
     }
     Ok(())

@@ -13,7 +13,7 @@ use crate::scene::{Edge, Expression, PerAxis, Select};
 ///
 /// The displacement must start from zero. To 2 mm within 10 ms, at rest at both ends: `Displacement(on:
 /// Select(face: MaxX), value: ("2e-3*smoothstep(t/0.01)", 0.0))`; this also holds y. A rigid body moves as a
-/// whole, with the same value in all of its places; `Turn` turns it.
+/// whole, with the same value in all of its places; `RotationRate` rotates it.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Displacement {

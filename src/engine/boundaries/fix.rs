@@ -30,9 +30,9 @@ fn all_axes() -> Vec<Axis> {
 }
 
 /// No motion.
-struct Rest;
+struct NoMotion;
 
-impl Drive for Rest {
+impl Drive for NoMotion {
     fn velocity(&self, _: bool, _: &Clock, _: DVec3, _: DVec3) -> Result<DVec3, StepError> {
         Ok(DVec3::ZERO)
     }
@@ -55,7 +55,7 @@ impl Plugin for Fix {
         let (selection, rigid) = split_rigid(&selection, sim)?;
         for body in rigid {
             let motion = Prescription::rest(Self::NAME);
-            sim.extend(DrivenBody { body, motion, axes: held, drive: Box::new(Rest) });
+            sim.extend(DrivenBody { body, motion, axes: held, drive: Box::new(NoMotion) });
         }
         sim.prescribe(&selection, held, Prescription::rest(Self::NAME))?;
         sim.add_setup(move |setup| {

@@ -8,7 +8,7 @@ use serde::Deserialize;
 
 use super::field::VectorField;
 use super::part::{Part, parts_of};
-use super::velocity::LARGEST_MACH;
+use super::velocity::MAX_MACH;
 use crate::notation::{place, quantity, quantity_to};
 use crate::plugin::{BodyKind, Plugin, SetupError, SimBuilder};
 use crate::scene::{Expression, PerAxis, Select};
@@ -73,7 +73,7 @@ fn warn_of_fast_start(field: &VectorField, parts: &[Part], sim: &mut SimBuilder<
         let body = sim.body(part.body);
         let sound = body.material.sound_speed().filter(|_| body.kind == BodyKind::Solid);
         let speed = part.points.iter().map(|&point| field.at(point, 0.0).length()).fold(0.0, f64::max);
-        if let Some(sound) = sound.filter(|sound| speed > LARGEST_MACH * sound) {
+        if let Some(sound) = sound.filter(|sound| speed > MAX_MACH * sound) {
             let (name, factor) = (&body.name, quantity_to(speed / sound, "1", 3));
             let (speed, sound) = (quantity(speed, "m/s"), quantity(sound, "m/s"));
             sim.warn(format!(

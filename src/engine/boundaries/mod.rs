@@ -23,6 +23,7 @@ mod part;
 mod prescribed;
 mod pressure;
 mod rigid_part;
+mod rotation_rate;
 mod skin_load;
 #[cfg(test)]
 mod surface_tests;
@@ -30,7 +31,6 @@ mod symmetry;
 #[cfg(test)]
 mod tests;
 mod traction;
-mod turn;
 mod velocity;
 
 pub use body_force::BodyForce;
@@ -41,10 +41,10 @@ pub use initial_displacement::InitialDisplacement;
 pub use initial_velocity::{GivenVelocities, InitialVelocity};
 pub use mean_velocity::MeanVelocity;
 pub use pressure::PressureLoad;
+pub use rotation_rate::PrescribedRotation;
 pub use symmetry::{Side, Symmetry};
 pub use traction::Traction;
-pub use turn::PrescribedRotation;
-pub use velocity::{LARGEST_MACH, PrescribedVelocity};
+pub use velocity::{MAX_MACH, PrescribedVelocity};
 
 use crate::plugin::Registry;
 

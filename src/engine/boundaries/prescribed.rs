@@ -33,7 +33,7 @@ struct PrescribedMotion {
     field: VectorField,
     parts: Vec<Part>,
     /// Step of the difference that gives the velocity at the start, s.
-    least_difference: f64,
+    time_increment: f64,
 }
 
 /// Adds the systems that move the selection.
@@ -45,18 +45,17 @@ pub(super) fn prescribe(
     sim: &mut SimBuilder<'_>,
 ) -> Result<(), SetupError> {
     let (selection, rigid) = split_rigid(selection, sim)?;
-    let least_difference = 1e-6 * sim.scene().time.end;
+    let time_increment = 1e-6 * sim.scene().time.end;
     for body in rigid {
         require_one_motion(name, &field, body, sim)?;
-        let motion =
-            PrescribedMotion { name, kind, field: field.clone(), parts: Vec::new(), least_difference };
+        let motion = PrescribedMotion { name, kind, field: field.clone(), parts: Vec::new(), time_increment };
         let stated = prescription(&motion);
         sim.extend(DrivenBody { body, motion: stated, axes: field.axes(), drive: Box::new(motion) });
     }
     if selection.is_empty() {
         return Ok(());
     }
-    let motion = PrescribedMotion { name, kind, field, parts: parts_of(&selection, sim), least_difference };
+    let motion = PrescribedMotion { name, kind, field, parts: parts_of(&selection, sim), time_increment };
     sim.prescribe(&selection, motion.field.axes(), prescription(&motion))?;
     let motion = Arc::new(motion);
     start_walls(&motion, sim);
@@ -150,7 +149,7 @@ impl PrescribedMotion {
         match self.kind {
             PrescribedKind::Velocity => self.field.at(point, 0.0),
             PrescribedKind::Displacement => {
-                let after = self.least_difference;
+                let after = self.time_increment;
                 (self.field.at(point, after) - self.field.at(point, 0.0)) / after
             }
         }
@@ -158,7 +157,7 @@ impl PrescribedMotion {
 
     /// Two times, s, whose difference gives the velocity at the end of the step.
     fn around_end(&self, clock: &Clock) -> (f64, f64) {
-        let half = if clock.dt > 0.0 { 0.5 * clock.dt } else { self.least_difference };
+        let half = if clock.dt > 0.0 { 0.5 * clock.dt } else { self.time_increment };
         ((clock.end() - half).max(0.0), clock.end() + half)
     }
 

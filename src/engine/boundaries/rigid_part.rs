@@ -67,7 +67,7 @@ pub(super) fn require_one_motion(
                 place(other),
                 quantity(t, "s")
             );
-            let help = "give the motion of its centre as a function of t alone, and its rotation by `Turn`: a swing about another point is both";
+            let help = "give the motion of its centre as a function of t alone, and its rotation by `RotationRate`: a swing about another point is both";
             return Err(SetupError::parameter("value", message, help));
         }
     }

@@ -3,9 +3,9 @@
 //! The work of a step is the mean of the forces at its two ends times the displacement of the vertices.
 //!
 //! On bodies that can fail, loads on a `face` act so until the first particle that carries it fails, and from
-//! that step on they act on the selected particles ([`OnceBroken`](super::broken_skin::OnceBroken)). Loads on
-//! another part of the `surface` have no such particles: they leave out the facets whose particles have
-//! failed.
+//! that step on they act on the selected particles ([`BrokenSkinLoad`](super::broken_skin::BrokenSkinLoad)).
+//! Loads on another part of the `surface` have no such particles: they leave out the facets whose particles
+//! have failed.
 
 use std::sync::Arc;
 
@@ -275,7 +275,7 @@ impl SkinLoad {
         }
         let account = step.ledger.account(self.label, AccountKind::Supplied);
         step.ledger.add(account, skin.body, self.patch.work(&mut self.last, step.clock.dt));
-        self.patch.hand_on();
+        self.patch.transfer_forces();
         let body = step.world.body(skin.body);
         if let Some(mut solid) = step.resources.solid_mut(body.phase) {
             self.patch.add_couples(&mut *solid, body.rows.start);

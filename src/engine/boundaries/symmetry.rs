@@ -37,8 +37,8 @@ pub enum Side {
     Above,
 }
 
-/// Least distance of a particle from the plane, as a share of the spacing.
-const LEAST_DISTANCE: f64 = 0.05;
+/// Minimum distance of a particle from the plane, as a share of the spacing.
+const MIN_DISTANCE: f64 = 0.05;
 
 impl Plugin for Symmetry {
     const NAME: &'static str = "Symmetry";
@@ -141,7 +141,7 @@ impl Symmetry {
             _ => {}
         }
         let nearest = distances().map(f64::abs).fold(f64::INFINITY, f64::min);
-        if (least < 0.0 && most > 0.0) || nearest < LEAST_DISTANCE * body.spacing {
+        if (least < 0.0 && most > 0.0) || nearest < MIN_DISTANCE * body.spacing {
             return Err(SetupError::parameter(
                 "at",
                 format!(

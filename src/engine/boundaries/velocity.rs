@@ -14,7 +14,7 @@ use crate::scene::{Edge, Expression, PerAxis, Select};
 /// A velocity that jumps sends a shock through the body. A smooth start within 1 ms, then a constant velocity
 /// of -0.1 m/s: `Velocity(on: Select(body: "tool"), value: (None, "-0.1*smoothstep(t/1e-3)"))`. A push of 2
 /// ms that ends as smoothly as it starts: `"-0.1*smoothstep(t/1e-3)*(1 - smoothstep((t - 1e-3)/1e-3))"`. A
-/// rigid body moves as a whole, with the same value in all of its places; `Turn` turns it.
+/// rigid body moves as a whole, with the same value in all of its places; `RotationRate` rotates it.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename = "Velocity")]
 pub struct PrescribedVelocity {
@@ -45,7 +45,7 @@ impl Plugin for PrescribedVelocity {
 }
 
 /// Largest speed of solids that is no slip of units, in speeds of sound.
-pub const LARGEST_MACH: f64 = 10.0;
+pub const MAX_MACH: f64 = 10.0;
 /// Times of a run at which it is looked at.
 const TIMES: u32 = 64;
 
@@ -62,7 +62,7 @@ fn warn_of_fast_motion(field: &VectorField, selection: &Selection, sim: &mut Sim
     let solids = sim.bodies().iter().filter(|body| body.kind == BodyKind::Solid);
     let sounds = solids.filter_map(|body| Some((body.material.sound_speed()?, &body.name)));
     if let Some((sound, name)) = sounds.min_by(|a, b| a.0.total_cmp(&b.0))
-        && speed > LARGEST_MACH * sound
+        && speed > MAX_MACH * sound
     {
         let (factor, sound) = (quantity_to(speed / sound, "1", 3), quantity(sound, "m/s"));
         let speed = quantity(speed, "m/s");

@@ -35,7 +35,7 @@ impl FourOfColumn {
         ])
     }
 
-    /// Writes them to a column, as many as there is room for.
+    /// Writes them to a column, as many as fit.
     #[inline(always)]
     pub fn store(self, numbers: &mut [f64]) {
         let [a, b, c] = self.0;
@@ -88,14 +88,14 @@ impl FourOfColumn {
 
     /// Products of components.
     #[inline(always)]
-    pub fn times<A: FourLanes>(self, a: A, other: Self) -> Self {
+    pub fn mul<A: FourLanes>(self, a: A, other: Self) -> Self {
         let ([x, y, z], [p, q, r]) = (self.0, other.0);
-        Self([a.times(x, p), a.times(y, q), a.times(z, r)])
+        Self([a.mul(x, p), a.mul(y, q), a.mul(z, r)])
     }
 
     /// `self + s other`.
     #[inline(always)]
-    pub fn plus_scaled<A: FourLanes>(self, a: A, s: f64, other: Self) -> Self {
+    pub fn add_scaled<A: FourLanes>(self, a: A, s: f64, other: Self) -> Self {
         let ([x, y, z], [p, q, r]) = (self.0, other.0);
         Self([a.scale_add(s, p, x), a.scale_add(s, q, y), a.scale_add(s, r, z)])
     }
@@ -112,19 +112,19 @@ impl FourOfColumn {
     #[inline(always)]
     pub fn dot_onto<A: FourLanes>(self, a: A, other: Self, sum: Lanes4) -> Lanes4 {
         let ([x, y, z], [p, q, r]) = (self.0, other.0);
-        a.times_add(z, r, a.times_add(y, q, a.times_add(x, p, sum)))
+        a.mul_add(z, r, a.mul_add(y, q, a.mul_add(x, p, sum)))
     }
 
     /// Squares of the lengths of the four vectors.
     #[inline(always)]
     pub fn squares<A: FourLanes>(self, a: A) -> Lanes4 {
-        let Self([Lanes4(p), Lanes4(q), Lanes4(r)]) = self.times(a, self);
+        let Self([Lanes4(p), Lanes4(q), Lanes4(r)]) = self.mul(a, self);
         let (x, y, z) = (
             Lanes4([p[0], p[3], q[2], r[1]]),
             Lanes4([p[1], q[0], q[3], r[2]]),
             Lanes4([p[2], q[1], r[0], r[3]]),
         );
-        a.plus(a.plus(x, y), z)
+        a.add(a.add(x, y), z)
     }
 }
 
@@ -152,7 +152,7 @@ mod tests {
 
                 let g = DVec3::new(0.3, -2.0, 5.0);
                 let masses = [1.0, 2.0, 4.0, 8.0];
-                let weights = FourOfColumn::of_numbers(&masses[..count]).times(a, FourOfColumn::splat(g));
+                let weights = FourOfColumn::of_numbers(&masses[..count]).mul(a, FourOfColumn::splat(g));
                 let sum = four.dot_onto(a, weights, Lanes4::ZERO).sum();
                 let wanted: f64 = (0..count).map(|k| masses[k] * g.dot(vectors[k])).sum();
                 assert!((sum - wanted).abs() < 1e-13, "{sum} {wanted}");

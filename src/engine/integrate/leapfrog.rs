@@ -190,12 +190,12 @@ impl HotLoop for FirstKick<'_> {
             let (f, mobility, mass, at) = of.four(k);
             let (x, velocity) = (&mut positions[at.clone()], &mut of.velocity[at]);
             let (before, place) = (FourOfColumn::load(velocity), FourOfColumn::load(x));
-            let v = before.plus_scaled(a, 0.5 * self.dt, f.times(a, mobility));
+            let v = before.add_scaled(a, 0.5 * self.dt, f.mul(a, mobility));
             v.store(velocity);
-            let moved = place.plus_scaled(a, self.dt, v);
+            let moved = place.add_scaled(a, self.dt, v);
             moved.store(x);
             changed |= v.difference(before) | moved.difference(place);
-            let weight = mass.times(a, gravity);
+            let weight = mass.mul(a, gravity);
             gravity_power = weight.dot_onto(a, v, gravity_power);
             constraint_power = f.where_held(a, mobility).dot_onto(a, v, constraint_power);
         }
@@ -276,12 +276,12 @@ impl HotLoop for SecondKick<'_> {
             let velocity = &mut of.velocity[at];
             let before = FourOfColumn::load(velocity);
             constraint_power = f.where_held(a, mobility).dot_onto(a, before, constraint_power);
-            let acceleration = f.times(a, mobility);
-            let v = before.plus_scaled(a, 0.5 * self.dt, acceleration);
+            let acceleration = f.mul(a, mobility);
+            let v = before.add_scaled(a, 0.5 * self.dt, acceleration);
             v.store(velocity);
             changed |= v.difference(before);
-            twice_kinetic = mass.times(a, v).dot_onto(a, v, twice_kinetic);
-            acceleration_squared = a.larger(acceleration.squares(a), acceleration_squared);
+            twice_kinetic = mass.mul(a, v).dot_onto(a, v, twice_kinetic);
+            acceleration_squared = a.max(acceleration.squares(a), acceleration_squared);
         }
         let [p, q, r, s] = acceleration_squared.0;
         MotionSum {

@@ -12,5 +12,5 @@ mod specimen;
 #[cfg(test)]
 mod tests;
 
-pub use momenta::{Momenta, Thrown};
+pub use momenta::{ConservationError, Momenta};
 pub use specimen::{Affine, ForceSlope, NetForce, Specimen};

@@ -40,7 +40,7 @@ impl Momenta {
 
 /// Largest changes of the conserved quantities of a free body during its run.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Thrown {
+pub struct ConservationError {
     /// Of the momentum, over the sizes of the momenta of all particles.
     pub momentum: f64,
     /// Of the angular momentum, over the sizes of those of all particles.
@@ -54,12 +54,12 @@ impl<E: From<RunError> + From<MissingColumn>> Specimen<'_, E> {
     ///
     /// # Errors
     /// The simulation cannot be built or fails.
-    pub fn thrown(&self, velocity: impl Fn(DVec3) -> DVec3) -> Result<Thrown, E> {
+    pub fn thrown(&self, velocity: impl Fn(DVec3) -> DVec3) -> Result<ConservationError, E> {
         let mut simulation = self.moved(|_, x| x, velocity)?;
         simulation.start()?;
         let start = Momenta::of(&simulation)?;
         let energy = simulation.ledger().stored();
-        let mut found = Thrown::default();
+        let mut found = ConservationError::default();
         while !simulation.is_finished() {
             simulation.step()?;
             found.energy = found.energy.max((simulation.ledger().stored() / energy - 1.0).abs());

@@ -39,7 +39,7 @@ impl Hyperelastic for DecoupledNeoHookeanLaw {
         // A longitudinal wave along n has mu J^(-2/3) (5/9 tr b - n . b n / 3) + K J^2: at most 4/3 s^2 in
         // the bracket, b = F F^T.
         let (bulk, mu) = (self.0.bulk, self.0.shear);
-        let shape = 4.0 / 3.0 * mu * stretches.largest.powi(2) * stretches.least_volume.powf(-2.0 / 3.0);
+        let shape = 4.0 / 3.0 * mu * stretches.largest.powi(2) * stretches.smallest_volume.powf(-2.0 / 3.0);
         let volume = bulk * stretches.largest_volume.powi(2);
         ((shape + volume) / (bulk + 4.0 / 3.0 * mu)).sqrt()
     }

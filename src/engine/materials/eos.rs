@@ -166,7 +166,7 @@ impl PressureLaw {
     /// Largest speed of longitudinal waves over present lengths, over that of the undeformed material:
     /// elastic strains are small, so that plastic flow does not change it, and the pressure may stiffen.
     pub fn wave_factor(&self, elastic: &ElasticConstants, stretches: &Stretches) -> f64 {
-        let stiffer = elastic.bulk * (self.stiffening(stretches.least_volume) - 1.0).max(0.0);
+        let stiffer = elastic.bulk * (self.stiffening(stretches.smallest_volume) - 1.0).max(0.0);
         (1.0 + stiffer / elastic.longitudinal_modulus()).sqrt()
     }
 }

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::error::ParameterError;
-use super::johnson_cook_flow::{JohnsonCookFlow, LEAST_STRAIN};
+use super::johnson_cook_flow::{JohnsonCookFlow, MIN_STRAIN};
 use super::value_and_slope::ValueAndSlope;
 
 /// How the flow stress grows with plastic strain.
@@ -104,7 +104,7 @@ impl Hardening {
             Self::Linear { yield_stress, modulus } => (yield_stress + modulus * strain, modulus),
             Self::Power { yield_stress, coefficient, exponent } => {
                 let power = coefficient * strain.powf(exponent);
-                (yield_stress + power, exponent * power / strain.max(LEAST_STRAIN))
+                (yield_stress + power, exponent * power / strain.max(MIN_STRAIN))
             }
             Self::Voce { yield_stress, saturation, rate } => {
                 let rest = saturation * (-rate * strain).exp();

@@ -143,7 +143,7 @@ impl HotLoop for HypoelasticLoop<'_, '_> {
             }
             deviator[k].0 = now.deviator;
             let (pressure, stored) = pressures.advance(k, volume.ratio, rows.plastic_work[k], rows.dt);
-            let tau = (now.deviator.plus_diagonal(-pressure)) * volume.ratio;
+            let tau = (now.deviator.add_diagonal(-pressure)) * volume.ratio;
             rows.stress[k] = first_piola(&tau, &volume.cofactor, volume.ratio);
             let square = now.deviator.double_dot(&now.deviator);
             rows.energy[k] = volume.ratio * square / (4.0 * law.elastic.shear) + stored;

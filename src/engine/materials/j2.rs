@@ -191,7 +191,7 @@ impl HotLoop for PlasticLoop<'_, '_> {
                 let increment = trial.increment(&law.hardening);
                 left = 1.0 - 3.0 * shear * increment / q;
                 let kept = (e * (2.0 * (left - 1.0))).exp();
-                plastic[k].0 = pull_back(&b.times_coaxial(&kept), &volume.cofactor, volume.ratio);
+                plastic[k].0 = pull_back(&b.mul_coaxial(&kept), &volume.cofactor, volume.ratio);
                 e = e * left;
                 q *= left;
                 let work = increment * 0.5 * (equivalent[k].0 + q);
@@ -203,7 +203,7 @@ impl HotLoop for PlasticLoop<'_, '_> {
             // Also where bonds are cut: what is beyond yield after that flows back from there.
             equivalent[k].0 = q;
             let (pressure, stored) = pressures.advance(k, volume.ratio, rows.plastic_work[k], rows.dt);
-            let tau = (e * (2.0 * shear)).plus_diagonal(-volume.ratio * pressure);
+            let tau = (e * (2.0 * shear)).add_diagonal(-volume.ratio * pressure);
             rows.stress[k] = first_piola(&tau, &volume.cofactor, volume.ratio);
             rows.energy[k] = shear * square * left * left + stored;
             rows.strength[k] = if strain[k].0 > 0.0 { yield_stress[k].0 } else { f64::INFINITY };

@@ -8,7 +8,7 @@ use super::heating::room_temperature;
 use super::value_and_slope::ValueAndSlope;
 
 /// Plastic strain below which the slope of a power law is taken at this strain: it is infinite at zero.
-pub(super) const LEAST_STRAIN: f64 = 1e-12;
+pub(super) const MIN_STRAIN: f64 = 1e-12;
 
 /// Hands the parameters of the flow stress, declared once, to another macro.
 ///
@@ -98,7 +98,7 @@ impl JohnsonCookFlow {
     #[inline]
     pub fn hardened(&self, strain: f64) -> ValueAndSlope {
         let power = self.b * strain.powf(self.n);
-        ValueAndSlope { value: self.a + power, slope: self.n * power / strain.max(LEAST_STRAIN) }
+        ValueAndSlope { value: self.a + power, slope: self.n * power / strain.max(MIN_STRAIN) }
     }
 
     /// Factor of the plastic strain rate, 1/s, and its derivative by the rate.

@@ -38,7 +38,7 @@ impl Hyperelastic for NeoHookeanLaw {
         // A wave along n has the acoustic tensor mu (n . b n) I + (mu + lambda (1 - ln J)) n (x) n, b = F
         // F^T.
         let (lambda, mu) = (self.0.lambda, self.0.shear);
-        let along = mu + lambda * (1.0 - stretches.least_volume.ln());
+        let along = mu + lambda * (1.0 - stretches.smallest_volume.ln());
         ((mu * stretches.largest.powi(2) + along) / (lambda + 2.0 * mu)).sqrt().max(1.0)
     }
 

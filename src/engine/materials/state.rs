@@ -5,7 +5,7 @@ use std::any::TypeId;
 use crate::parallel::Split;
 use crate::world::{Column, ColumnInfo, ColumnSet};
 
-/// Most state columns that one law may have.
+/// Maximum number of state columns that one law may have.
 pub const MAX_STATE: usize = 16;
 
 /// The state columns of a law, in the order of their names.

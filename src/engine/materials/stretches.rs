@@ -11,13 +11,13 @@ pub struct Stretches {
     /// Largest principal stretch.
     pub largest: f64,
     /// Smallest ratio of volumes J.
-    pub least_volume: f64,
+    pub smallest_volume: f64,
     /// Largest ratio of volumes J.
     pub largest_volume: f64,
 }
 
 impl Default for Stretches {
     fn default() -> Self {
-        Self { smallest: 1.0, largest: 1.0, least_volume: 1.0, largest_volume: 1.0 }
+        Self { smallest: 1.0, largest: 1.0, smallest_volume: 1.0, largest_volume: 1.0 }
     }
 }

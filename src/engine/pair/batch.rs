@@ -9,7 +9,7 @@ use crate::parallel::{FourLanes, Lanes4, Number, Vector};
 
 /// Fours from which on a batch is full: it then still fits the first-level cache.
 const FULL: usize = 40;
-/// Most rows of a batch.
+/// Maximum number of rows of a batch.
 pub(super) const MAX_ROWS: usize = 16;
 
 /// Four vectors, and their lengths or the squares of these.
@@ -28,7 +28,7 @@ impl FourVectors {
     #[inline(always)]
     pub(crate) fn squared<A: FourLanes>(a: A, vector: Vector<A>) -> Self {
         let square = vector.length_squared().lanes();
-        Self { vector: components(vector), length: a.larger(square, Lanes4::splat(f64::MIN_POSITIVE)) }
+        Self { vector: components(vector), length: a.max(square, Lanes4::splat(f64::MIN_POSITIVE)) }
     }
 }
 
@@ -185,8 +185,8 @@ impl PairBatch {
         self.count
     }
 
-    /// Adds the row of the next particle, of volume V_i, m3, with room for that many neighbours, to be filled
-    /// by the caller.
+    /// Adds the row of the next particle, of volume V_i, m3, with capacity for that many neighbours, to be
+    /// filled by the caller.
     #[inline(always)]
     pub fn add_row(&mut self, volume_i: f64, neighbors: usize) -> RowSlots<'_> {
         let start = self.starts[self.count];

@@ -5,7 +5,7 @@ use super::term::{Pair, Rates};
 use super::weight_at::WeightAt;
 use crate::parallel::{EIGHT, EightLanes, Lanes8, Number, Vector};
 
-/// Most neighbours: their pairs fit the first-level cache.
+/// Maximum number of neighbours: their pairs fit the first-level cache.
 pub(crate) const CHUNK: usize = 48;
 
 /// One neighbour of all particles of a block. Where it is beyond the support, or the particle itself, its
@@ -73,7 +73,7 @@ impl BlockPairs {
     /// Room for that many neighbours, up to [`CHUNK`], in the place of those that were there; to be filled by
     /// the caller.
     #[inline(always)]
-    pub fn room(&mut self, count: usize) -> &mut [EightPairs] {
+    pub fn slots(&mut self, count: usize) -> &mut [EightPairs] {
         self.count = count;
         &mut self.pairs[..count]
     }

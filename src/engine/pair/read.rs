@@ -65,7 +65,7 @@ impl<C: Column> Read for Relative<C> {
     const RELATIVE: bool = true;
 }
 
-/// Most components of a value.
+/// Maximum number of components of a value.
 const COMPONENTS: usize = 9;
 
 #[inline(always)]

@@ -152,11 +152,11 @@ impl WorkRows<'_> {
         let (mut of_velocity, mut of_acceleration) = ([Lanes4::ZERO; T], [Lanes4::ZERO; T]);
         for (k, v) in self.velocity.iter().enumerate() {
             let v = Lanes4::new(v.0, 0.0);
-            let acceleration = a.times(Lanes4::new(force[k].0, 0.0), Lanes4::new(mobility[k].0, 0.0));
+            let acceleration = a.mul(Lanes4::new(force[k].0, 0.0), Lanes4::new(mobility[k].0, 0.0));
             for slot in 0..T {
                 let force = Lanes4::new(by_term[k][slot], 0.0);
-                of_velocity[slot] = a.times_add(force, v, of_velocity[slot]);
-                of_acceleration[slot] = a.times_add(force, acceleration, of_acceleration[slot]);
+                of_velocity[slot] = a.mul_add(force, v, of_velocity[slot]);
+                of_acceleration[slot] = a.mul_add(force, acceleration, of_acceleration[slot]);
             }
         }
         let mut power = Power::default();

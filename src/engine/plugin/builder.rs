@@ -8,7 +8,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::error::SetupError;
-use super::handed::HandedIn;
+use super::handed::Contributions;
 use super::plan::BodyPlan;
 use super::prescription::Prescription;
 use super::selection::{self, Selection};
@@ -41,7 +41,7 @@ pub struct SimBuilder<'s> {
     pub(crate) prescriptions: Vec<Prescription>,
     /// Bodies that selections hold.
     pub(crate) held: RefCell<Vec<BodyId>>,
-    pub(crate) handed: HandedIn,
+    pub(crate) handed: Contributions,
     /// Shared values of systems.
     pub(crate) shared: SharedValues,
 }
@@ -68,7 +68,7 @@ impl<'s> SimBuilder<'s> {
             prescribed: BTreeMap::new(),
             prescriptions: Vec::new(),
             held: RefCell::default(),
-            handed: HandedIn::default(),
+            handed: Contributions::default(),
             shared: SharedValues::default(),
         }
     }

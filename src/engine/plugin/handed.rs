@@ -44,7 +44,7 @@ struct ForAll {
 
 /// All that was handed in and not yet taken. Values of one type keep the order in which they came.
 #[derive(Default)]
-pub(crate) struct HandedIn {
+pub(crate) struct Contributions {
     /// The plugin, condition or formulation that is being built.
     pub by: Option<Item>,
     /// Values that concern the whole simulation.
@@ -52,7 +52,7 @@ pub(crate) struct HandedIn {
     terms: BTreeMap<TypeId, Vec<Term>>,
 }
 
-impl HandedIn {
+impl Contributions {
     pub fn put<T: 'static>(&mut self, value: T, is_note: bool) {
         let value = ForAll {
             by: self.by.clone(),

@@ -39,7 +39,7 @@ const MAGIC: [u8; 8] = *b"\x89MSHL\r\n\x1a";
 const PREFIX: usize = 24;
 const CHUNK: usize = 4 << 20;
 /// An LZ4 block grows by at most this factor, by construction of its length bytes.
-const LARGEST_EXPANSION: u64 = 255;
+const MAX_EXPANSION: u64 = 255;
 
 // Sections are the memory of columns as it is.
 const _: () = assert!(cfg!(target_endian = "little"), "checkpoints are little endian");
@@ -71,7 +71,7 @@ impl SectionInfo {
     fn raw_len(&self) -> Option<usize> {
         let raw = self.element_size.checked_mul(self.count)?;
         let fits = raw.div_ceil(CHUNK as u64) == self.chunks.len() as u64
-            && raw / LARGEST_EXPANSION <= self.stored_len()
+            && raw / MAX_EXPANSION <= self.stored_len()
             && self.element_size > 0;
         if fits { usize::try_from(raw).ok() } else { None }
     }

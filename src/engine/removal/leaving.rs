@@ -10,7 +10,7 @@ use crate::world::{Force, sum_by_row};
 /// Name of the velocities of particles that are removed in this step, in the access of systems.
 pub(crate) const LEAVING: &str = "leaving_particles";
 
-impl Shareable for Leaving {
+impl Shareable for LeavingParticles {
     const ROWS: &'static [&'static str] = &[LEAVING];
 }
 
@@ -19,9 +19,9 @@ impl Shareable for Leaving {
 /// such forces books what that kick would have taken from them: a formulation that puts this into its phase,
 /// and contact.
 #[derive(Debug, Default)]
-pub(crate) struct Leaving(Vec<(u32, DVec3)>);
+pub(crate) struct LeavingParticles(Vec<(u32, DVec3)>);
 
-impl Leaving {
+impl LeavingParticles {
     /// Forgets those of the step before.
     pub fn clear(&mut self) {
         self.0.clear();

@@ -8,6 +8,6 @@ mod system;
 mod tests;
 
 pub(crate) use domain::DomainBox;
-pub(crate) use leaving::{LEAVING, Leaving};
+pub(crate) use leaving::{LEAVING, LeavingParticles};
 pub use rule::RemovalRule;
 pub use system::{REMOVAL, REMOVED_ENERGY, add_system};

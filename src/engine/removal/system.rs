@@ -8,7 +8,7 @@
 use glam::DVec3;
 
 use super::domain::{DomainBox, RemoveOutside};
-use super::leaving::{LEAVING, Leaving};
+use super::leaving::{LEAVING, LeavingParticles};
 use super::rule::RemovalRule;
 use crate::notation::quantity;
 use crate::parallel::{Picked, sum_over_blocks};
@@ -65,7 +65,7 @@ impl Run for Removal {
             // From the first step on, so that the tables of energies have a column for it.
             step.ledger.account(REMOVED_ENERGY, AccountKind::Dissipated);
         }
-        leaving_of_phases(step, Leaving::clear);
+        leaving_of_phases(step, LeavingParticles::clear);
         for rule in &mut self.rules {
             for body in (0..step.world.bodies().len()).map(BodyId) {
                 self.rows.clear();
@@ -76,15 +76,15 @@ impl Run for Removal {
                 }
             }
         }
-        leaving_of_phases(step, Leaving::sort);
+        leaving_of_phases(step, LeavingParticles::sort);
         Ok(())
     }
 }
 
 /// Changes the list of what leaves of every phase that has one.
-fn leaving_of_phases(step: &Step<'_>, change: impl Fn(&mut Leaving)) {
+fn leaving_of_phases(step: &Step<'_>, change: impl Fn(&mut LeavingParticles)) {
     for phase in step.world.phases() {
-        if let Some(mut leaving) = step.resources.try_get_mut_of::<Leaving>(phase) {
+        if let Some(mut leaving) = step.resources.try_get_mut_of::<LeavingParticles>(phase) {
             change(&mut leaving);
         }
     }
@@ -106,7 +106,7 @@ fn remove(step: &mut Step<'_>, body: BodyId, rows: &[u32]) -> Result<(), StepErr
     }
     let (view, own) = step.world.body_view(body);
     let due = step.part.is_due(step.world, body);
-    let mut leaving = step.resources.try_get_mut_of::<Leaving>(step.world.body(body).phase);
+    let mut leaving = step.resources.try_get_mut_of::<LeavingParticles>(step.world.body(body).phase);
     let kinetic = {
         let (velocity, force) = (view.read::<Velocity>()?, view.read::<Force>()?);
         let (mobility, mass) = (view.read::<Mobility>()?, view.read::<Mass>()?);

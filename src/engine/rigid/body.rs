@@ -65,7 +65,7 @@ pub struct RigidBody {
     /// Centre in the reference configuration, m.
     pub reference_center: DVec3,
     /// Largest distance of a point of the body from its centre, m.
-    pub reach: f64,
+    pub bounding_radius: f64,
     /// Surface in the reference configuration.
     pub surface: Box<dyn Surface>,
     /// Points that touch other surfaces.
@@ -89,7 +89,7 @@ impl RigidBody {
     }
 
     pub(super) fn new(parts: RigidParts, state: RigidState) -> Self {
-        let RigidParts { id, mass, inertia, points, reach, surface, nodes, constraint } = parts;
+        let RigidParts { id, mass, inertia, points, bounding_radius, surface, nodes, constraint } = parts;
         let contact = Wrench::default();
         let reference_center = state.center;
         Self {
@@ -98,7 +98,7 @@ impl RigidBody {
             inertia,
             points,
             reference_center,
-            reach,
+            bounding_radius,
             surface,
             nodes,
             constraint,
@@ -171,7 +171,7 @@ pub(super) struct RigidParts {
     pub mass: f64,
     pub inertia: Inertia,
     pub points: Option<Sym3>,
-    pub reach: f64,
+    pub bounding_radius: f64,
     pub surface: Box<dyn Surface>,
     pub nodes: Nodes,
     pub constraint: Constraint,

@@ -56,7 +56,7 @@ pub struct DrivenRotation {
 }
 
 /// How a body may turn.
-pub(super) enum Turning {
+pub(super) enum RotationConstraint {
     Free,
     Held,
     /// Freely about one axis, a unit vector.
@@ -67,7 +67,7 @@ pub(super) enum Turning {
 /// The prescribed part of the motion of a body.
 pub(super) struct Constraint {
     pub drives: Vec<DrivenBody>,
-    pub turning: Turning,
+    pub turning: RotationConstraint,
 }
 
 impl Constraint {
@@ -80,12 +80,13 @@ impl Constraint {
 
     /// Whether the whole motion is prescribed.
     pub fn is_complete(&self) -> bool {
-        self.free_axes() == DVec3::ZERO && matches!(self.turning, Turning::Held | Turning::Driven(_))
+        self.free_axes() == DVec3::ZERO
+            && matches!(self.turning, RotationConstraint::Held | RotationConstraint::Driven(_))
     }
 
     /// Whether it does not turn at all.
     pub fn is_held_from_turning(&self) -> bool {
-        matches!(self.turning, Turning::Held)
+        matches!(self.turning, RotationConstraint::Held)
     }
 
     /// Sets the prescribed components of a velocity of the centre.
@@ -109,12 +110,12 @@ impl Constraint {
     /// Angular acceleration of a torque, 1/s2 for N m.
     pub fn angular_response(&self, inertia: &Inertia, rotation: DQuat, torque: DVec3) -> DVec3 {
         match &self.turning {
-            Turning::Free => inertia.angular_velocity(rotation, torque),
-            Turning::About(axis) => {
+            RotationConstraint::Free => inertia.angular_velocity(rotation, torque),
+            RotationConstraint::About(axis) => {
                 let moment = axis.dot(inertia.angular_momentum(rotation, *axis));
                 *axis * (axis.dot(torque) / moment)
             }
-            Turning::Held | Turning::Driven(_) => DVec3::ZERO,
+            RotationConstraint::Held | RotationConstraint::Driven(_) => DVec3::ZERO,
         }
     }
 }

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::body::{RigidBodies, RigidBody, RigidParts, RigidState};
-use super::constraint::{Constraint, DrivenBody, DrivenRotation, HalvedBody, Turning};
+use super::constraint::{Constraint, DrivenBody, DrivenRotation, HalvedBody, RotationConstraint};
 use super::inertia::MassProperties;
 use super::nodes::{Nodes, RigidNode};
 use super::rotation::Inertia;
@@ -106,8 +106,8 @@ impl Constraint {
     /// Checks that a prescribed motion keeps a body where a symmetry plane cuts it.
     fn holds(&self, halved: &HalvedBody, sim: &SimBuilder<'_>) -> Result<(), SetupError> {
         let HalvedBody { body, axis } = *halved;
-        let is_held =
-            self.drives.iter().any(|drive| drive.axes[axis]) && !matches!(self.turning, Turning::Free);
+        let is_held = self.drives.iter().any(|drive| drive.axes[axis])
+            && !matches!(self.turning, RotationConstraint::Free);
         if is_held {
             return Ok(());
         }
@@ -153,14 +153,14 @@ impl Rigid {
                 let message = "the rotation of the body is prescribed by a condition, and stated here too";
                 return Err(SetupError::parameter(at(""), message, "leave out `rotation`"));
             }
-            (Some(driven), None) => Turning::Driven(driven),
-            (None, Some(Rotation::Free)) => Turning::Free,
-            (None, Some(Rotation::Held)) => Turning::Held,
+            (Some(driven), None) => RotationConstraint::Driven(driven),
+            (None, Some(Rotation::Free)) => RotationConstraint::Free,
+            (None, Some(Rotation::Held)) => RotationConstraint::Held,
             (None, Some(Rotation::About(axis))) => {
-                Turning::About(checked_axis(axis.0, sim.dimension(), &at(".rotation"))?)
+                RotationConstraint::About(checked_axis(axis.0, sim.dimension(), &at(".rotation"))?)
             }
-            (None, None) if drives.is_empty() => Turning::Free,
-            (None, None) => Turning::Held,
+            (None, None) if drives.is_empty() => RotationConstraint::Free,
+            (None, None) => RotationConstraint::Held,
         };
         Ok(Constraint { drives, turning })
     }
@@ -179,15 +179,15 @@ impl Rigid {
         self.check(plan, mass, &constraint, sim.dimension())?;
         let factor = mass / of_shape.mass;
         let nodes = Nodes::new(shape, &*surface, &plan.sites, plan.spacing, sim.dimension());
-        let reach_of = |node: &RigidNode| node.point.distance(of_shape.center) + node.radius();
-        let reach = nodes.list().iter().map(reach_of).fold(0.0, f64::max);
+        let distance_of = |node: &RigidNode| node.point.distance(of_shape.center) + node.radius();
+        let bounding_radius = nodes.list().iter().map(distance_of).fold(0.0, f64::max);
         let points = of_shape.points * factor;
         let parts = RigidParts {
             id,
             mass,
             inertia: Inertia::new(&(of_shape.tensor * factor)),
             points: (points.determinant() > 0.0).then(|| points.inverse()),
-            reach,
+            bounding_radius,
             surface,
             nodes,
             constraint,

@@ -4,7 +4,7 @@
 use glam::DVec3;
 
 use super::body::RigidBody;
-use super::constraint::Turning;
+use super::constraint::RotationConstraint;
 
 /// Prescribed acceleration of the points of a rigid body in a step.
 #[derive(Clone, Copy, Debug)]
@@ -30,7 +30,7 @@ impl PrescribedAcceleration {
 impl RigidBody {
     /// The prescribed acceleration in this step; none where no motion is prescribed.
     pub fn prescribed_acceleration(&self) -> Option<PrescribedAcceleration> {
-        let turns = matches!(self.constraint.turning, Turning::Driven(_));
+        let turns = matches!(self.constraint.turning, RotationConstraint::Driven(_));
         if self.state.gone || !(turns || self.constraint.free_axes() != DVec3::ONE) {
             return None;
         }
@@ -43,7 +43,7 @@ impl RigidBody {
     /// velocities of the centre, m/s, and of the rotation, 1/s, at its start.
     pub(super) fn note_drives(&mut self, before: [DVec3; 2], half: f64) {
         let per_time = if half > 0.0 { half.recip() } else { 0.0 };
-        let turns = matches!(self.constraint.turning, Turning::Driven(_));
+        let turns = matches!(self.constraint.turning, RotationConstraint::Driven(_));
         let angular = if turns { self.state.angular_velocity - before[1] } else { DVec3::ZERO };
         self.gained = [per_time * (self.state.velocity - before[0]), per_time * angular];
     }

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use super::body::{RIGID_BODIES, RigidBodies, RigidBody, RigidState};
-use super::constraint::Turning;
+use super::constraint::RotationConstraint;
 use super::wrench::Wrench;
 use crate::parallel::{BlockSum, sum_over_blocks};
 use crate::plugin::SimBuilder;
@@ -59,14 +59,14 @@ impl RigidBody {
         let torque = half * self.state.torque;
         let (inertia, rotation) = (&self.inertia, self.state.rotation);
         match &self.constraint.turning {
-            Turning::Free => {
+            RotationConstraint::Free => {
                 self.state.angular_momentum += torque;
                 self.state.angular_velocity = inertia.angular_velocity(rotation, self.state.angular_momentum);
             }
-            Turning::About(_) => {
+            RotationConstraint::About(_) => {
                 self.state.angular_velocity += self.constraint.angular_response(inertia, rotation, torque);
             }
-            Turning::Held | Turning::Driven(_) => {}
+            RotationConstraint::Held | RotationConstraint::Driven(_) => {}
         }
         self.refresh();
     }
@@ -87,13 +87,15 @@ impl RigidBody {
     fn refresh(&mut self) {
         let (inertia, state) = (&self.inertia, &mut self.state);
         match &self.constraint.turning {
-            Turning::Free => {
+            RotationConstraint::Free => {
                 state.angular_velocity = inertia.angular_velocity(state.rotation, state.angular_momentum);
                 return;
             }
-            Turning::About(axis) => state.angular_velocity = *axis * axis.dot(state.angular_velocity),
-            Turning::Held => state.angular_velocity = DVec3::ZERO,
-            Turning::Driven(_) => {}
+            RotationConstraint::About(axis) => {
+                state.angular_velocity = *axis * axis.dot(state.angular_velocity)
+            }
+            RotationConstraint::Held => state.angular_velocity = DVec3::ZERO,
+            RotationConstraint::Driven(_) => {}
         }
         state.angular_momentum = inertia.angular_momentum(state.rotation, state.angular_velocity);
     }
@@ -103,7 +105,7 @@ impl RigidBody {
         let before = self.kinetic();
         let (center, reference) = (self.state.center, self.reference_center);
         self.constraint.set_velocity(end_of_step, clock, center, reference, &mut self.state.velocity)?;
-        if let Turning::Driven(driven) = &self.constraint.turning {
+        if let RotationConstraint::Driven(driven) = &self.constraint.turning {
             let rate = driven.rate.velocity(end_of_step, clock, center, reference)?;
             self.state.angular_velocity = driven.axis * rate.x;
         }
@@ -115,7 +117,7 @@ impl RigidBody {
     fn constraint_power(&self) -> f64 {
         let held = DVec3::ONE - self.constraint.free_axes();
         let turning = match self.constraint.turning {
-            Turning::Driven(_) => self.state.torque.dot(self.state.angular_velocity),
+            RotationConstraint::Driven(_) => self.state.torque.dot(self.state.angular_velocity),
             _ => 0.0,
         };
         (held * self.state.force).dot(self.state.velocity) + turning
@@ -125,9 +127,9 @@ impl RigidBody {
         self.state.center += dt * self.state.velocity;
         let state = &mut self.state;
         state.rotation = match &self.constraint.turning {
-            Turning::Free => self.inertia.turn(state.rotation, state.angular_momentum, dt),
-            Turning::Held => state.rotation,
-            Turning::About(_) | Turning::Driven(_) => {
+            RotationConstraint::Free => self.inertia.turn(state.rotation, state.angular_momentum, dt),
+            RotationConstraint::Held => state.rotation,
+            RotationConstraint::About(_) | RotationConstraint::Driven(_) => {
                 (glam::DQuat::from_scaled_axis(dt * state.angular_velocity) * state.rotation).normalize()
             }
         };
@@ -216,7 +218,7 @@ const MOTION_FACTOR: f64 = 0.1;
 /// the square of that.
 const TURN_FACTOR: f64 = 0.02;
 /// Steps of a body that nothing moves, in the whole run.
-const LEAST_STEPS: f64 = 100.0;
+const MIN_STEPS: f64 = 100.0;
 
 struct RigidKick {
     end: f64,
@@ -325,7 +327,7 @@ fn propose(body: &RigidBody, driven: DVec3, end: f64, step: &mut Step<'_>) {
     // Forces do not accelerate a body along axes on which its motion is prescribed.
     let pulled = if free == DVec3::ZERO { DVec3::ZERO } else { free * body.state.force / body.mass };
     let acceleration = (pulled + (DVec3::ONE - free) * driven).length() / spacing;
-    let rate = (turning / TURN_FACTOR).max((acceleration / MOTION_FACTOR).sqrt()).max(LEAST_STEPS / end);
+    let rate = (turning / TURN_FACTOR).max((acceleration / MOTION_FACTOR).sqrt()).max(MIN_STEPS / end);
     let name = &step.world.body(body.id).name;
     step.limits.propose(1.0 / rate, format_args!("motion of `{name}`"));
 }

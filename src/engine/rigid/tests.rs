@@ -63,7 +63,7 @@ fn a_motion_that_differs_within_a_rigid_body_is_an_error() {
     ];
     for turn in turns {
         let error = plates(turn).err().expect("an error").to_string();
-        assert!(error.contains("`left` moves as a whole") && error.contains("`Turn`"), "{error}");
+        assert!(error.contains("`left` moves as a whole") && error.contains("`RotationRate`"), "{error}");
     }
 }
 

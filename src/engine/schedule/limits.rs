@@ -13,7 +13,7 @@ pub struct Limit {
     pub by: String,
 }
 
-/// Bytes of a text for which there is room from the start.
+/// Bytes of a text with memory from the start.
 const TEXT: usize = 128;
 
 impl Clone for Limit {
@@ -37,7 +37,7 @@ impl Default for Limit {
     }
 }
 
-/// Least number of steps for which a limit is kept.
+/// Minimum number of steps for which a limit is kept.
 const MEMORY: u32 = 500;
 
 /// The limits proposed for the next step. The smallest one is kept; of equal ones the first.

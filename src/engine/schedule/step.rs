@@ -131,7 +131,7 @@ impl StepError {
 }
 
 /// Warns of something that has grown: in the place of the warning that begins alike, if there is one.
-pub fn warn_anew(warnings: &mut Vec<String>, begin: &str, text: String) {
+pub fn replace_warning(warnings: &mut Vec<String>, begin: &str, text: String) {
     match warnings.iter_mut().find(|warning| warning.starts_with(begin)) {
         Some(warning) => *warning = text,
         None => warnings.push(text),

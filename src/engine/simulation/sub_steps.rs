@@ -6,7 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{LEAST_STEP, RunError, Simulation};
+use super::{MIN_STEP, RunError, Simulation};
 use crate::scene;
 use crate::schedule::{Clock, Limit, Stage, TimeStepLimits};
 use crate::world::PhaseId;
@@ -97,7 +97,7 @@ impl Simulation {
         self.sub_steps.state.last = 0;
         loop {
             let count = self.sub_steps.count(rest);
-            if count.is_nan() || count * LEAST_STEP >= 1.0 {
+            if count.is_nan() || count * MIN_STEP >= 1.0 {
                 let limit = self.sub_steps.state.next.clone();
                 let (dt, by) = limit.map_or((f64::NAN, String::new()), |limit| (limit.dt, limit.by));
                 return Err(RunError::StepTooSmall { dt, by });

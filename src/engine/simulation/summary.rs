@@ -72,7 +72,7 @@ pub struct Summary {
     pub balance_error: f64,
     /// The same over the largest energy that any account has held.
     pub relative_error: f64,
-    /// Least, largest and last value of every column of every probe, with their times.
+    /// Minimum, maximum and last value of every column of every probe, with their times.
     pub probes: BTreeMap<String, Vec<Extreme>>,
     /// Warnings for the user.
     pub warnings: Vec<String>,

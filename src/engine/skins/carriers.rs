@@ -14,8 +14,8 @@ use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Perio
 use crate::shapes::Aabb;
 use crate::symmetry::Map;
 
-/// Reach of a vertex over the spacing: of 1.6, 2, 2.1 and 2.41, at the usual support, the one with the least
-/// error of the traction.
+/// Reach of a vertex over the spacing: of 1.6, 2, 2.1 and 2.41, at the usual support, the one with the
+/// minimum error of the traction.
 pub(super) const REACH: f64 = 2.1;
 /// By how much the reach grows for vertices with fewer than [`FEWEST`] particles.
 const WIDER: f64 = 1.25;

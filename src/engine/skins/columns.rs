@@ -127,29 +127,30 @@ impl SkinView<'_> {
             let (weight, arm) = (carrier.weight, carrier.arm);
             if carrier.map != 0 {
                 let place = self.carried(carrier, row);
-                x[0] = a.mul_add(weight, place.x, x[0]);
-                y[0] = a.mul_add(weight, place.y, y[0]);
-                z[0] = a.mul_add(weight, place.z, z[0]);
+                x[0] = a.scalar_mul_add(weight, place.x, x[0]);
+                y[0] = a.scalar_mul_add(weight, place.y, y[0]);
+                z[0] = a.scalar_mul_add(weight, place.z, z[0]);
                 continue;
             }
             let (place, f) = (&self.position[row].0, &self.gradient[row].0);
             let (p, q, r) = (weight * arm.x, weight * arm.y, weight * arm.z);
-            x[0] = a.mul_add(p, f.x_axis.x, a.mul_add(weight, place.x, x[0]));
-            y[0] = a.mul_add(p, f.x_axis.y, a.mul_add(weight, place.y, y[0]));
-            x[1] = a.mul_add(r, f.z_axis.x, a.mul_add(q, f.y_axis.x, x[1]));
-            y[1] = a.mul_add(r, f.z_axis.y, a.mul_add(q, f.y_axis.y, y[1]));
-            z[0] = a.mul_add(p, f.x_axis.z, a.mul_add(weight, place.z, z[0]));
-            z[1] = a.mul_add(r, f.z_axis.z, a.mul_add(q, f.y_axis.z, z[1]));
+            x[0] = a.scalar_mul_add(p, f.x_axis.x, a.scalar_mul_add(weight, place.x, x[0]));
+            y[0] = a.scalar_mul_add(p, f.x_axis.y, a.scalar_mul_add(weight, place.y, y[0]));
+            x[1] = a.scalar_mul_add(r, f.z_axis.x, a.scalar_mul_add(q, f.y_axis.x, x[1]));
+            y[1] = a.scalar_mul_add(r, f.z_axis.y, a.scalar_mul_add(q, f.y_axis.y, y[1]));
+            z[0] = a.scalar_mul_add(p, f.x_axis.z, a.scalar_mul_add(weight, place.z, z[0]));
+            z[1] = a.scalar_mul_add(r, f.z_axis.z, a.scalar_mul_add(q, f.y_axis.z, z[1]));
         }
         (DVec3::new(x[0] + x[1], y[0] + y[1], z[0] + z[1]), is_there)
     }
 
     /// The same where the shares follow the deformation: those without a share need not be there.
     fn look_at_following(&self, vertex: u32) -> (DVec3, bool) {
-        let Looked(place, missing) = self.mean(vertex, Looked::default(), |share, carrier, row| {
-            let missing = share > 0.0 && self.removed[row] != Removed::NO;
-            Looked(share * self.carried(carrier, row), u32::from(missing))
-        });
+        let VertexPosition(place, missing) =
+            self.mean(vertex, VertexPosition::default(), |share, carrier, row| {
+                let missing = share > 0.0 && self.removed[row] != Removed::NO;
+                VertexPosition(share * self.carried(carrier, row), u32::from(missing))
+            });
         (place, missing == 0)
     }
 
@@ -182,9 +183,9 @@ impl SkinView<'_> {
 
 /// Where a vertex is, m, and how many of its carriers have been removed.
 #[derive(Clone, Copy, Default)]
-struct Looked(DVec3, u32);
+struct VertexPosition(DVec3, u32);
 
-impl std::ops::Add for Looked {
+impl std::ops::Add for VertexPosition {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {

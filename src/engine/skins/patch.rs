@@ -37,7 +37,7 @@ pub(crate) struct Wanted {
 
 /// Forces passed on to particles.
 #[derive(Clone, Copy)]
-struct HandedOn<'a> {
+struct CarrierForces<'a> {
     skin: &'a Skin,
     forces: &'a [DVec3],
     couples: Option<&'a [DMat3]>,
@@ -49,7 +49,7 @@ struct HandedOn<'a> {
 
 /// The loop over particles, from the first of a block on.
 struct OnParticles<'a> {
-    all: HandedOn<'a>,
+    all: CarrierForces<'a>,
     first: usize,
     on: (&'a mut [(DVec3, DMat3)], &'a mut [DMat3]),
 }
@@ -73,7 +73,7 @@ impl HotLoop for OnParticles<'_> {
     }
 }
 
-impl HandedOn<'_> {
+impl CarrierForces<'_> {
     /// The force, N, and the couple, N m, on a particle at these ends.
     #[inline(always)]
     fn on_particle<A: FourLanes>(&self, a: A, ends: &[End]) -> (DVec3, DMat3) {
@@ -92,9 +92,21 @@ impl HandedOn<'_> {
             let (x, y, z) = (end.weight * f.x, end.weight * f.y, end.weight * f.z);
             (fx, fy, fz) = (fx + x, fy + y, fz + z);
             let arm = &end.arm;
-            (xx, yx, zx) = (a.mul_add(x, arm.x, xx), a.mul_add(y, arm.x, yx), a.mul_add(z, arm.x, zx));
-            (xy, yy, zy) = (a.mul_add(x, arm.y, xy), a.mul_add(y, arm.y, yy), a.mul_add(z, arm.y, zy));
-            (xz, yz, zz) = (a.mul_add(x, arm.z, xz), a.mul_add(y, arm.z, yz), a.mul_add(z, arm.z, zz));
+            (xx, yx, zx) = (
+                a.scalar_mul_add(x, arm.x, xx),
+                a.scalar_mul_add(y, arm.x, yx),
+                a.scalar_mul_add(z, arm.x, zx),
+            );
+            (xy, yy, zy) = (
+                a.scalar_mul_add(x, arm.y, xy),
+                a.scalar_mul_add(y, arm.y, yy),
+                a.scalar_mul_add(z, arm.y, zy),
+            );
+            (xz, yz, zz) = (
+                a.scalar_mul_add(x, arm.z, xz),
+                a.scalar_mul_add(y, arm.z, yz),
+                a.scalar_mul_add(z, arm.z, zz),
+            );
         }
         let columns = [DVec3::new(xx, yx, zx), DVec3::new(xy, yy, zy), DVec3::new(xz, yz, zz)];
         let mut couple = DMat3 { x_axis: columns[0], y_axis: columns[1], z_axis: columns[2] };
@@ -161,7 +173,7 @@ pub(crate) struct Patch {
 }
 
 impl Patch {
-    /// An empty one, with room for all of the skin.
+    /// An empty one, with capacity for all of the skin.
     pub fn new(skin: Arc<Skin>) -> Self {
         let (vertices, carriers) = (skin.vertices(), skin.carrier_count());
         let particles = carriers.min(skin.layer.len());
@@ -390,10 +402,10 @@ impl Patch {
     }
 
     /// Adds the forces on the vertices to the particles.
-    pub fn hand_on(&mut self) {
+    pub fn transfer_forces(&mut self) {
         let Self { skin, forces, couples, has_couples, starts, ends, following, .. } = self;
         let couples = has_couples.then_some(&couples[..]);
-        let all = HandedOn { skin, forces, couples, starts, ends, following };
+        let all = CarrierForces { skin, forces, couples, starts, ends, following };
         let (on_particles, couples_on_particles) = (&mut self.on_particles, &mut self.couples_on_particles);
         let rows = (&mut on_particles[..], &mut couples_on_particles[..]);
         for_each_block(rows, &mut Vec::new(), &|first, on| run_hot(OnParticles { all, first, on }));

@@ -3,8 +3,8 @@
 /// How far from a vertex particles may be at the start to become its carriers, over the reach: three layers.
 pub(super) const CANDIDATES: f64 = 1.6;
 
-/// Least reach over the distance of the nearest carrier, so that a vertex always has one.
-const LEAST: f64 = 2.0;
+/// Minimum reach over the distance of the nearest carrier, so that a vertex always has one.
+const MIN_REACH: f64 = 2.0;
 
 /// The present reach of a vertex, m, and the sum of the weights of its carriers.
 #[derive(Clone, Copy, Debug, Default)]
@@ -17,7 +17,7 @@ impl Scale {
     /// From the present distances of the carriers, m, for a reach, m, of the undeformed body.
     pub fn of(distances: impl Iterator<Item = f64> + Clone, reach: f64) -> Self {
         let nearest = distances.clone().fold(f64::INFINITY, f64::min);
-        let reach = reach.max(LEAST * nearest);
+        let reach = reach.max(MIN_REACH * nearest);
         Self { reach, sum: distances.map(|distance| weight(distance / reach)).sum() }
     }
 

@@ -126,7 +126,7 @@ fn forces_on_a_skin_are_those_on_its_particles_in_sum_and_moment() {
                 patch.push(facet, shares, f, None);
             }
         }
-        patch.hand_on();
+        patch.transfer_forces();
         let (view, rows) = sim.world().body_view(BodyId(0));
         let mut on_particles = vec![Force(DVec3::ZERO); rows.len()];
         patch.add_forces(&mut on_particles);
@@ -174,7 +174,7 @@ fn forces_return_by_the_transpose_where_shares_follow_the_deformation() {
         patch.select(0..skin.facets.corners.len() as u32);
         patch.update(&SkinColumns::new(&skin, sim.world()).unwrap().view(), 0.0, Wanted::default());
         vertices.iter().for_each(|&k| patch.push_vertex(k as usize, load(k as usize)));
-        patch.hand_on();
+        patch.transfer_forces();
         let size = patch.on_particles().map(|(_, force, _)| force.length()).fold(0.0, f64::max);
         let (view, rows) = sim.world().body_view(BodyId(0));
         for (particle, force, couple) in patch.on_particles().step_by(17) {

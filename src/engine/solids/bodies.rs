@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glam::DMat3;
 
 use super::constitutive::{CRUSHED, Constitutive, MAX_TERMS, SolidBlock, SolidColumns, SolidRows, SolidSum};
-use super::damping::{self, DampedInShortSteps, DampedStrain, DampingStress};
+use super::damping::{self, DampedStrain, DampedSubSteps, DampingStress};
 use super::folded::{FoldedEnergy, FoldedRows, FoldedTerm, FoldedTermOfBodies};
 use super::hessian::{self, HessianDifference, HessianForm, HessianResidual, HessianStiffness};
 use super::pair_control::{self, PairControl};
@@ -120,7 +120,7 @@ impl SolidBodies {
         let hessian: Vec<ForBodies<HessianDifference>> =
             sim.take_for(&offering(ids, Offer::HessianDifferences, sim));
         let control: Vec<ForBodies<PairControl>> = sim.take_for(&offering(ids, Offer::PairControl, sim));
-        let damped: Vec<ForBodies<DampedInShortSteps>> = sim.take_for(&own);
+        let damped: Vec<ForBodies<DampedSubSteps>> = sim.take_for(&own);
         damped.iter().for_each(|ForBodies { bodies, .. }| {
             sim.add_column_to::<DampedStrain>(bodies);
             sim.add_column_to::<DampingStress>(bodies);
@@ -303,9 +303,9 @@ impl SolidBodies {
     pub fn limit_from_present(&mut self, step: &mut Step<'_>, present: &[f64]) -> Result<(), StepError> {
         let axes = step.world.dimension().count() as f64;
         self.limit_by(step, present, |_, law, gradient, damage| {
-            let Stretches { least_volume, largest_volume, .. } = stretches::of_body(gradient, damage);
-            let smallest = least_volume.max(0.0).powf(1.0 / axes);
-            law.stable_step_factor(&Stretches { smallest, largest: 1.0, least_volume, largest_volume })
+            let Stretches { smallest_volume, largest_volume, .. } = stretches::of_body(gradient, damage);
+            let smallest = smallest_volume.max(0.0).powf(1.0 / axes);
+            law.stable_step_factor(&Stretches { smallest, largest: 1.0, smallest_volume, largest_volume })
         })
     }
 
@@ -326,7 +326,7 @@ impl SolidBodies {
             match reference(k) {
                 None => law.stable_step_factor(&stretches),
                 Some(reference) => {
-                    stretches::smallest_since(gradient, reference, damage) / law.wave_factor(&stretches)
+                    stretches::min_stretch_since(gradient, reference, damage) / law.wave_factor(&stretches)
                 }
             }
         })

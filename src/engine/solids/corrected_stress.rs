@@ -46,7 +46,7 @@ impl CorrectedStress {
 
     /// `A X + k u` for any X and u.
     #[inline(always)]
-    pub fn times(&self, reference: DVec3, displacement: DVec3) -> DVec3 {
+    pub fn apply(&self, reference: DVec3, displacement: DVec3) -> DVec3 {
         let [x, y, z] = &self.columns;
         let stress = x.xyz() * reference.x + y.xyz() * reference.y + z.xyz() * reference.z;
         stress + displacement * self.stiffness()

@@ -35,7 +35,7 @@ crate::column! {
 pub(super) const ACCOUNT: &str = "coupling_damping";
 
 /// Handed to solids whose sub-steps are damped, by what sub-cycles them.
-pub(crate) struct DampedInShortSteps;
+pub(crate) struct DampedSubSteps;
 
 /// The columns of a body, empty where it is not damped.
 #[derive(Default)]

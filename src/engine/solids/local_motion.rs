@@ -117,10 +117,10 @@ impl<W: Copy + Into<f64>, P: HasPlace> HotLoop for RateSum<'_, W, P> {
                 Some(there) if ghosts.is_empty() => there.0,
                 _ => velocity[ghosts.source(j)].0 * ghosts.mirror(j).unwrap_or(DVec3::ONE),
             };
-            let v_ij = a.minus(Lanes4::new(there, 0.0), v);
+            let v_ij = a.sub(Lanes4::new(there, 0.0), v);
             let weight: f64 = weight.into();
             let weighted = a.scale(weight * other.0[3], v_ij);
-            let x_ij = a.minus(other, own);
+            let x_ij = a.sub(other, own);
             for (axis, sum) in sum.iter_mut().enumerate() {
                 *sum = a.scale_add(x_ij.0[axis], weighted, *sum);
             }

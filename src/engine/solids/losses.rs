@@ -9,7 +9,7 @@ use crate::column;
 column! {
     /// Losses of a solid that the sums over neighbours already leave out: 1 for a particle that has been
     /// removed, 2 for one that has failed, 3 for both.
-    pub struct TakenUp(u32) = "losses_taken_up", "-", "1";
+    pub struct AppliedLosses(u32) = "losses_taken_up", "-", "1";
 }
 
 /// How a particle is lost.
@@ -21,7 +21,7 @@ pub enum Loss {
     Failed = 2,
 }
 
-impl TakenUp {
+impl AppliedLosses {
     /// The rows of that loss, ascending.
     pub fn rows(column: &[Self], loss: Loss) -> Vec<u32> {
         (0..column.len() as u32).filter(|&row| column[row as usize].0 & loss as u32 != 0).collect()
@@ -40,12 +40,12 @@ mod tests {
 
     #[test]
     fn a_particle_that_has_failed_and_is_removed_is_of_both() {
-        let mut column = [TakenUp::default(); 4];
-        TakenUp::write(&mut column, Loss::Failed, &[1, 2]);
-        TakenUp::write(&mut column, Loss::Removed, &[2]);
+        let mut column = [AppliedLosses::default(); 4];
+        AppliedLosses::write(&mut column, Loss::Failed, &[1, 2]);
+        AppliedLosses::write(&mut column, Loss::Removed, &[2]);
         assert_eq!(column.map(|row| row.0), [0, 2, 3, 0]);
-        TakenUp::write(&mut column, Loss::Failed, &[1]);
-        assert_eq!(TakenUp::rows(&column, Loss::Failed), [1]);
-        assert_eq!(TakenUp::rows(&column, Loss::Removed), [2]);
+        AppliedLosses::write(&mut column, Loss::Failed, &[1]);
+        assert_eq!(AppliedLosses::rows(&column, Loss::Failed), [1]);
+        assert_eq!(AppliedLosses::rows(&column, Loss::Removed), [2]);
     }
 }

@@ -87,15 +87,15 @@ impl PairRows for SolidPairRows<'_> {
             let is_there = self.removed[i] == Removed::NO;
             let mut count = 0;
             self.solid.neighbors(i, &mut |_, _| count += 1);
-            let mut room = batch.add_row(self.volume[i].0, if is_there { count } else { 0 });
+            let mut slots = batch.add_row(self.volume[i].0, if is_there { count } else { 0 });
             let mut k = 0;
             self.solid.neighbors(i, &mut |j, weight| {
                 if is_there {
-                    room.put(k, self.neighbor(i, j, weight));
+                    slots.put(k, self.neighbor(i, j, weight));
                     k += 1;
                 }
             });
-            room.close(k);
+            slots.close(k);
         }
     }
 }

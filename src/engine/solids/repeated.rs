@@ -3,7 +3,7 @@
 use super::bodies::SolidBodies;
 use super::constitutive::SolidSum;
 use crate::parallel::sum_over_blocks;
-use crate::removal::Leaving;
+use crate::removal::LeavingParticles;
 use crate::schedule::{AccountId, Step, StepError};
 use crate::world::{Force, Velocity};
 
@@ -42,7 +42,7 @@ impl SolidBodies {
         for ((body, held), sum) in self.iter().zip(held).zip(self.found()) {
             let (view, rows) = step.world.body_view(body.id);
             let velocity = view.read::<Velocity>()?;
-            let leaving = step.resources.try_get_of::<Leaving>(step.world.body(body.id).phase);
+            let leaving = step.resources.try_get_of::<LeavingParticles>(step.world.body(body.id).phase);
             let gone = leaving.map_or(0.0, |leaving| leaving.power(&rows, before));
             let own = (&before[rows.clone()], &after[rows.clone()], &velocity[rows]);
             type Rows<'a> = (&'a [Force], &'a [Force], &'a [Velocity]);

@@ -21,9 +21,10 @@ pub(crate) const CASE: Case = Case {
 /// Height of the beam, m.
 const HEIGHT: f64 = 0.1;
 /// Deflection of the neutral axis between the supports and the middle, m, and stress at the lower and the
-/// upper side in the middle, Pa: plane elasticity with point loads, by finite elements of nine nodes, which
-/// agree to five digits with 16, 32 and 64 of them over the height. Beam theory has 2.262e-4 m with a shear
-/// strain of Q / (G A), and 6e5 Pa at both sides; the rollers press through the beam.
+/// upper side in the middle, Pa: plane elasticity with point loads, by nine-node finite elements, whose
+/// results with 16, 32 and 64 elements over the height agree to five digits. Beam theory with a shear strain
+/// of Q / (G A) gives 2.262e-4 m, and 6e5 Pa at both sides; it neglects the compression of the beam under the
+/// rollers.
 const DEFLECTION: f64 = 2.2587e-4;
 const SIDES: [(&str, f64); 2] = [("lower", 6.0556e5), ("upper", -5.9422e5)];
 /// Force on each support, N, and its arm to the roller above, m.
@@ -49,8 +50,8 @@ fn four_point(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     let source = "plane elasticity";
     let mut checks =
         vec![Check::new("deflection", deflection, DEFLECTION, tolerance, "m", source).converging()];
-    // That of the stiffness of a cantilever, S2: at few particles across the hourglass control bears a part
-    // of the moment.
+    // The tolerance of the stiffness of a cantilever, S2: at few particles across, the hourglass control
+    // carries a part of the moment.
     let tolerance = Tolerance::Relative([0.04, 0.02, 0.015][across.ilog2().clamp(3, 5) as usize - 3]);
     let bending = 12.0 * FORCE * ARM / HEIGHT.powi(3);
     let slope = slope(&simulation)?;
@@ -72,8 +73,7 @@ fn four_point(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     Ok(checks)
 }
 
-/// How fast the stress along the beam grows with the height in the middle, Pa/m: least squares along the
-/// line.
+/// Gradient of the stress along the beam over the height in the middle, Pa/m: least squares along the line.
 fn slope(simulation: &Simulation) -> Result<f64> {
     let shown = simulation.measure("stress")?;
     let last = shown.len().saturating_sub(1).max(1) as f64;

@@ -95,8 +95,8 @@ fn impact(simulation: &mut Simulation, radius: f64) -> Result<Impact> {
 const RADIUS: f64 = 0.05;
 const MODULUS: f64 = 1.0e7 / (1.0 - 0.45 * 0.45);
 
-/// Points of the surface on either side of the lowest one at which the overlap is looked at, up to an angle
-/// of ARC.
+/// Number of points of the surface on either side of the lowest one at which the overlap is evaluated, up to
+/// an angle of ARC.
 const POINTS: i32 = 400;
 const ARC: f64 = 0.3;
 
@@ -111,7 +111,8 @@ fn cylinder(registry: &Registry, rings: usize) -> Result<Vec<Check>> {
     run(&mut simulation, |_| Ok(()))?;
     let (upper, lower) = (state(&simulation, "upper")?, state(&simulation, "lower")?);
     let force = 0.5 * (upper.force.y - lower.force.y);
-    // The pressure of Hertz has the second moment a^2/4: no single particle decides where the contact ends.
+    // The half width follows from the second moment of the pressure, a^2/4 in the theory of Hertz: no single
+    // particle determines it.
     let plane = lower.center.y + 0.005;
     let cylinder = body(&simulation, "cylinder")?;
     let (mut total, mut moment) = (0.0, 0.0);

@@ -31,7 +31,7 @@ fn incline(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         run(&mut simulation, |_| Ok(()))?;
         let slide = state(&simulation, "block")?.center.x - 0.1;
         let name = format!("{angle} degrees, friction {friction}: slide in 1 s");
-        // What sticks moves by the stretch of its springs alone.
+        // A sticking block moves only by the extension of the tangential springs.
         let tolerance = if expected == 0.0 { Tolerance::Absolute(1e-4) } else { Tolerance::Relative(0.01) };
         checks.push(Check::new(name, slide, expected, tolerance, "m", SOURCE));
     }
@@ -43,7 +43,8 @@ fn incline(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         run(&mut simulation, |_| Ok(()))?;
         let disc = state(&simulation, "block")?;
         let (sin, cos) = angle.to_radians().sin_cos();
-        // A disc rolls if the friction can hold a third of what pulls it down; else it slides and is spun up.
+        // A disc rolls if the friction can carry a third of the downhill force; otherwise it slides and spins
+        // up.
         let rolls = angle.to_radians().tan() <= 3.0 * friction;
         let (along, spin) = if rolls {
             (2.0 / 3.0 * GRAVITY * sin, 2.0 / 3.0 * GRAVITY * sin / 0.1)

@@ -20,17 +20,17 @@ pub(crate) const CASE: Case = Case {
     run: metal_cutting,
 };
 
-/// Depth of cut, and places of the cut and of the free surface in the workpiece, m.
+/// Depth of cut, and positions of the cut and of the free surface in the workpiece, m.
 const DEPTH: f64 = 2.0e-4;
 const CUT: f64 = 2.0e-4;
 const TOP: f64 = 4.0e-4;
 /// Friction.
 const FRICTION: f64 = 0.2;
-/// Times between which forces are averaged, s: the chip is there, and no crack has run through it.
+/// Interval over which forces are averaged, s: the chip has formed, and no crack has run through it.
 const PRESSED: [f64; 2] = [1.5e-5, 3.0e-5];
-/// Time from which the chip is measured, s: it is two depths high.
+/// Time from which the chip is measured, s: it is two depths of cut high.
 const CHIP_FROM: f64 = 4.0e-5;
-/// Heights above the free surface between which it is measured, in depths.
+/// Heights above the free surface between which the chip is measured, in depths of cut.
 const CHIP: [f64; 2] = [0.25, 1.25];
 
 /// `across` is the number of particles in the depth of cut.
@@ -120,8 +120,8 @@ fn force_over_strength() -> f64 {
     DEPTH * beta.cos() / (phi.sin() * (phi + beta).cos())
 }
 
-/// Flow stress over sqrt 3 at the mean strain and temperature of what is sheared and holds, at a strain rate
-/// of v / (d / 10), Pa.
+/// Shear flow stress, the flow stress over sqrt 3, at the mean strain and temperature of the sheared material
+/// that has not failed and a strain rate of v / (d / 10), Pa.
 fn shear_strength(simulation: &Simulation, workpiece: BodyId) -> Result<f64> {
     let (view, rows) = simulation.world().body_view(workpiece);
     let (strain, damage) = (view.read::<PlasticStrain>()?, view.read::<Damage>()?);
@@ -135,8 +135,8 @@ fn shear_strength(simulation: &Simulation, workpiece: BodyId) -> Result<f64> {
     Ok(flow / 3f64.sqrt())
 }
 
-/// Area of what was above the cut and is between two heights beside the rake face now, over their distance,
-/// m.
+/// Thickness of the chip, m: area of the material that was above the cut and is now between two heights
+/// beside the rake face, over their difference.
 fn chip_thickness(simulation: &Simulation, workpiece: BodyId) -> Result<f64> {
     let (view, rows) = simulation.world().body_view(workpiece);
     let (reference, position) = (view.read::<ReferencePosition>()?, view.read::<Position>()?);
@@ -146,7 +146,7 @@ fn chip_thickness(simulation: &Simulation, workpiece: BodyId) -> Result<f64> {
     Ok(rows.filter(is_chip).map(|k| volume[k].0).sum::<f64>() / (high - low))
 }
 
-/// Mean distance of failed particles from the cut, in the workpiece as it was, m.
+/// Mean distance of failed particles from the cut, in the reference configuration of the workpiece, m.
 fn failed_off_the_cut(simulation: &Simulation, workpiece: BodyId) -> Result<f64> {
     let (view, rows) = simulation.world().body_view(workpiece);
     let (reference, damage) = (view.read::<ReferencePosition>()?, view.read::<Damage>()?);

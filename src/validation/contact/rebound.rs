@@ -21,13 +21,13 @@ pub(crate) const CASE: Case = Case {
 };
 
 const BALANCE: &str = "momentum balance";
-/// Bounces at the resolution of the tests, and at others.
+/// Number of bounces at the resolution of the tests, and at others.
 const BOUNCES: [usize; 2] = [100, 1000];
 
 /// `across` is the number of particles over the side of the block.
 fn rebound(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     let mut checks = Vec::new();
-    // Where the middle of the block starts, and where it is thrown to, at 0.3 of the speed of sound.
+    // Initial centre of the block, and the point that it flies to, at 0.3 of the speed of sound.
     for (name, start) in [
         ("face", DVec3::new(0.45, 0.55, 1.4)),
         ("edge", DVec3::new(1.3, 0.45, 1.35)),
@@ -48,7 +48,7 @@ fn rebound(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         let (momentum, angular) = momenta(&simulation)?;
         let mut deepest = f64::INFINITY;
         let balance = run(&mut simulation, |simulation| {
-            deepest = deepest.min(least_distance(simulation)?);
+            deepest = deepest.min(min_distance(simulation)?);
             Ok(())
         })?;
         let (after, turning) = momenta(&simulation)?;
@@ -56,7 +56,8 @@ fn rebound(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         let angular_error = (turning - angular).length() / angular.length();
         checks.push(Check::below(format!("{name}: momentum error"), error, 1e-10, BALANCE));
         checks.push(Check::below(format!("{name}: angular momentum error"), angular_error, 1e-10, BALANCE));
-        // At this speed an edge cuts between the particles; a layer that came through would stay inside.
+        // At this speed an edge penetrates between the particles; a layer that passed through would stay
+        // inside.
         let inside = "no layer passes the surface";
         checks.push(Check::above(
             format!("{name}: least distance over spacing"),
@@ -103,8 +104,8 @@ fn mean_velocity(simulation: &Simulation) -> Result<DVec3> {
     Ok(rows.map(|row| velocity[row].0).sum::<DVec3>() / count)
 }
 
-/// Least distance of a particle of the block from the surface, negative inside, m.
-fn least_distance(simulation: &Simulation) -> Result<f64> {
+/// Minimum distance of a particle of the block from the surface, negative inside, m.
+fn min_distance(simulation: &Simulation) -> Result<f64> {
     let (view, rows) = simulation.world().body_view(body(simulation, "block")?);
     let position = view.read::<Position>()?;
     let bodies = simulation.resources().get::<RigidBodies>();
@@ -113,7 +114,8 @@ fn least_distance(simulation: &Simulation) -> Result<f64> {
     Ok(rows.map(distance).fold(f64::INFINITY, f64::min))
 }
 
-/// A rigid block that bounces on the cube without loss, tumbling, without friction: it stays over its place.
+/// A rigid block that bounces and tumbles on the cube without friction or loss of energy; it does not drift
+/// sideways.
 fn bounces(registry: &Registry, wanted: usize) -> Result<Vec<Check>> {
     let mut simulation = Template::new(
         concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/validation/rebound/bounces.ron"),

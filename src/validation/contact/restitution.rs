@@ -14,7 +14,7 @@ pub(crate) const CASE: Case =
 
 const REFERENCE: &str = include_str!("../../../tests/validation/restitution/reference.csv");
 const SOURCE: &str = "integrated motion without tension, reference.csv";
-/// Height of the fall, m.
+/// Drop height, m.
 const FALL: f64 = 0.1;
 
 fn restitution(registry: &Registry, across: usize) -> Result<Vec<Check>> {

@@ -58,7 +58,7 @@ fn touching_surfaces(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     ])
 }
 
-/// From when on the blocks slide at a constant speed, s.
+/// Time from which the blocks slide at a constant speed, s.
 const SLIDING: f64 = 1.2;
 
 /// The force on the held side of the upper block, N.

@@ -24,15 +24,15 @@ const RECTANGLE: f64 = 2.0e-5;
 const WIDTHS: [f64; 2] = [4.0e-5, 2.0e-4];
 /// Speed of the flow, m/s.
 const SPEED: f64 = 100.0;
-/// Speeds at which the fluid starts, m/s. Wear is chaotic: runs from starts that differ by a thousandth wear
-/// off areas that differ by some tens of per cent.
+/// Initial speeds of the fluid, m/s. Wear is chaotic: runs whose initial speeds differ by a thousandth differ
+/// in the worn area by some tens of per cent.
 const STARTS: [f64; 5] = [SPEED, 100.1, 99.9, 100.2, 99.8];
-/// Depth below the floor, in spacings, down to which damage may reach away from hits.
+/// Maximum depth of damage below the floor away from impacts, in spacings.
 const DEPTH: f64 = 5.0;
-/// Time in which a place that has been worn off fills, s: the flow passes ten micrometres, half the height of
-/// the rectangle.
+/// Time in which fluid fills the place of a removed particle, s: the flow travels ten micrometres, half the
+/// height of the rectangle.
 const FILLING: f64 = 1.0e-7;
-/// How many of these starts, and for how long, s: at the resolution of the tests, and at others.
+/// Number of these runs and their duration, s: at the resolution of the tests, and at others.
 const RUNS: [(usize, f64); 2] = [(3, 5.0e-7), (5, 1.0e-6)];
 
 /// `across` is the number of particles over the height of the rectangle.
@@ -45,24 +45,24 @@ fn abrasive_flow(registry: &Registry, across: usize) -> Result<Vec<Check>> {
 
 /// Results of a run.
 struct WornRun {
-    /// Area worn off the rectangle, over its area.
+    /// Worn area of the rectangle, over its area.
     area: f64,
-    /// Ra over that at the start.
+    /// Ra over its initial value.
     roughness: f64,
-    /// Largest depth of damage below the floor away from hits, in spacings.
+    /// Maximum depth of damage below the floor away from impacts, in spacings.
     depth: f64,
-    /// Share of the places of removed particles that are filled again.
+    /// Fraction of the places of removed particles that are filled again.
     filled: f64,
-    /// Warnings of fluid inside of bodies.
+    /// Number of warnings of fluid inside of bodies.
     inside: usize,
-    /// Share of the fluid with a void beside it.
+    /// Fraction of the fluid particles next to a void.
     opened: f64,
-    /// Largest deviation of the mean speed over the speed.
+    /// Maximum deviation of the mean speed over the speed.
     off: f64,
     balance: Balance,
 }
 
-/// Runs the channel from a speed of the fluid, m/s, to `end`, s.
+/// Runs the channel from an initial speed of the fluid, m/s, to `end`, s.
 fn wear(registry: &Registry, across: usize, speed: f64, end: f64) -> Result<WornRun> {
     let spacing = RECTANGLE / across as f64;
     let mut simulation = Template::new(
@@ -96,8 +96,7 @@ fn wear(registry: &Registry, across: usize, speed: f64, end: f64) -> Result<Worn
     })
 }
 
-/// The figures of all runs: means of random quantities, and the worst values of those that must hold in every
-/// run.
+/// The checks of all runs: means of random quantities, and the worst values of invariants.
 fn checks(runs: &[WornRun]) -> Vec<Check> {
     let mean = |of: fn(&WornRun) -> f64| runs.iter().map(of).sum::<f64>() / runs.len() as f64;
     let largest = |of: fn(&WornRun) -> f64| runs.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
@@ -156,8 +155,8 @@ fn mean_speed(simulation: &Simulation) -> Result<f64> {
     Ok(momentum / mass)
 }
 
-/// How far below the floor there is damage above 0.1 away from hits, m: farther than the allowed depth from
-/// all that has been worn off. What a grain has dug out of the floor may be deeper, and is damaged around.
+/// Maximum depth below the floor of damage above 0.1 away from impacts, m: farther than the allowed depth
+/// from all removed particles. Material dug out of the floor by a grain may be deeper, with damage around it.
 fn deepest_damage(simulation: &Simulation, floor: BodyId, spacing: f64) -> Result<f64> {
     let (view, rows) = simulation.world().body_view(floor);
     let (reference, damage) = (view.read::<ReferencePosition>()?, view.read::<Damage>()?);
@@ -168,12 +167,12 @@ fn deepest_damage(simulation: &Simulation, floor: BodyId, spacing: f64) -> Resul
     Ok(damaged.filter(|x| !is_hit(*x)).map(|x| FLOOR - x.y).fold(0.0, f64::max))
 }
 
-/// The shortest of a vector and its images by the period.
+/// The shortest of a vector and its periodic images.
 fn along_period(u: DVec3) -> DVec3 {
     DVec3::new(u.x - WIDTHS[1] * (u.x / WIDTHS[1]).round(), u.y, u.z)
 }
 
-/// Area of the rectangle that has been worn off, m2.
+/// Worn area of the rectangle, m2.
 fn worn(simulation: &Simulation, floor: BodyId) -> Result<f64> {
     let (view, rows) = simulation.world().body_view(floor);
     let (reference, removed) = (view.read::<ReferencePosition>()?, view.read::<Removed>()?);
@@ -205,8 +204,8 @@ fn removed_rows(simulation: &Simulation, floor: BodyId) -> Result<Vec<usize>> {
     Ok(rows.filter(|&row| removed[row] == Removed::YES).collect())
 }
 
-/// Share of the places of particles that were removed before, within a spacing of which there is something
-/// else now: fluid, a grain, the rest of the floor.
+/// Fraction of the places of earlier removed particles with fluid, a grain or the rest of the floor within
+/// one spacing now.
 fn filled(simulation: &Simulation, floor: BodyId, gone: &[usize]) -> Result<f64> {
     let (view, _) = simulation.world().body_view(floor);
     let reference = view.read::<ReferencePosition>()?;
@@ -222,7 +221,7 @@ fn filled(simulation: &Simulation, floor: BodyId, gone: &[usize]) -> Result<f64>
     Ok(full as f64 / gone.len() as f64)
 }
 
-/// Share of the fluid whose particles have a gap of more than half their volume around them.
+/// Fraction of the fluid particles with a gap of more than half their volume around them.
 fn opened(simulation: &Simulation, fluid: BodyId) -> Result<f64> {
     let cloud = simulation.resources().try_get::<FlowCloud>().context("there is no flow")?;
     let (_, rows) = simulation.world().body_view(fluid);

@@ -19,11 +19,11 @@ pub(crate) const CASE: Case = Case {
 
 /// Results of a run.
 struct BoxRun {
-    /// Largest change of momentum since the start, over that at the start.
+    /// Maximum change of momentum since the start, over the initial momentum.
     lost: f64,
-    /// Largest change of momentum in a step, over that by rounding.
+    /// Maximum change of momentum in a step, over that by rounding.
     in_a_step: f64,
-    /// Largest change of the momentum of the box, over that at the start.
+    /// Maximum change of the momentum of the box, over its initial momentum.
     passed: f64,
     per_step: f64,
     balance: Balance,

@@ -19,10 +19,10 @@ pub(crate) const CASE: Case = Case {
 
 const SOURCE: &str = "Meduri et al. 2017 and Ryzhakov et al. 2010, middle of both";
 
-/// Time and value of the largest value of a curve of the reference.
+/// Time and value of the maximum of a curve of the reference.
 fn peak(column: &str) -> Result<(f64, f64)> {
     let csv = include_str!("../../../tests/validation/dam_break_obstacle/reference.csv");
-    // The first line after the comment names the columns by what they are, the second by whose they are.
+    // The first line after the comment has the quantities of the columns, the second one their authors.
     let lines: Vec<&str> = csv.lines().filter(|line| !line.starts_with("x,")).collect();
     Record::read(&lines.join("\n"), "t_s", column)?.maximum()
 }

@@ -1,4 +1,4 @@
-//! X3: a rubber gate in front of water, and the gate alone under a load that is held.
+//! X3: a rubber gate in front of water, and the gate alone under a constant load.
 
 use anyhow::{Context, Result};
 use meshless_engine::glam::DVec3;
@@ -22,7 +22,7 @@ struct DryGate {
     /// Young's modulus, Pa.
     young: f64,
     poisson: f64,
-    /// Where its end comes to rest, m: to the side and up.
+    /// Displacement of its end at rest, m: sideways and up.
     end: [f64; 2],
 }
 
@@ -31,21 +31,21 @@ const DRY: [DryGate; 2] = [
     DryGate { young: 7.8e6, poisson: 0.47, end: [41.45e-3, 13.82e-3] },
 ];
 const SOURCE: &str = "elastica in plane strain, reference.csv";
-/// Particles across of which the gate is put into water too, or a multiple, and compared with half as many:
-/// the lattices of the gate and of the tank then end at the same height.
+/// The gate is also computed in water if the number of particles across is a multiple of this, and compared
+/// with half as many: the lattices of the gate and of the tank then end at the same height.
 const FINE: usize = 16;
-/// Strain energy of which the hourglass control may store a share.
+/// Maximum energy of the hourglass control, over the strain energy.
 const SHARE: f64 = 0.1;
 
 /// `across` is the number of particles over the thickness of the gate.
 fn elastic_gate(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     let mut checks = Vec::new();
-    // The tests have the values of the experiment alone.
+    // The tests run only the material of the experiment.
     let count = if across == CASE.ci_resolution { 1 } else { DRY.len() };
     for material in &DRY[..count] {
         checks.extend(dry(registry, across, *material)?);
     }
-    // The displacements of the one that every resolution has.
+    // The displacements of the material that every resolution runs.
     checks[..2].iter_mut().for_each(|check| check.converges = true);
     if across.is_multiple_of(FINE) {
         checks.extend(wet(registry, across)?);
@@ -80,13 +80,13 @@ fn dry(registry: &Registry, across: usize, gate: DryGate) -> Result<Vec<Check>> 
     ])
 }
 
-/// Energy in the hourglass control over that in the strain.
+/// Energy of the hourglass control over the strain energy.
 fn control_share(simulation: &Simulation) -> f64 {
     let ledger = simulation.ledger();
     ledger.total_named("hourglass") / ledger.total_named("strain")
 }
 
-/// The gate in water, fine, coarse, and with a coefficient of the control of a fifth.
+/// The gate in water: fine, coarse, and with a fifth of the coefficient of the hourglass control.
 fn wet(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     let fine = flood(registry, across, 5.0)?;
     let coarse = flood(registry, across / 2, 5.0)?;
@@ -107,9 +107,9 @@ fn wet(registry: &Registry, across: usize) -> Result<Vec<Check>> {
 
 /// Results for the gate in water.
 struct Flood {
-    /// Largest displacement of its lower corner to the side and up, m.
+    /// Maximum displacement of its lower corner sideways and up, m.
     moved: [f64; 2],
-    /// Energy of the control over strain energy at the largest displacement.
+    /// Energy of the hourglass control over the strain energy at the maximum displacement.
     share: f64,
     balance: Check,
 }

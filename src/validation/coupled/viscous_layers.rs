@@ -18,8 +18,8 @@ pub(crate) const CASE: Case = Case {
 };
 
 const SLAB: &str = include_str!("../../../tests/validation/viscous_layers/reference.csv");
-/// Speed of the walls, m/s, their angular frequency, 1/s, and the time that is looked at: the last four
-/// seconds are two periods. At 12 s the transient of the start still is 2 %.
+/// Speed of the walls, m/s, their angular frequency, 1/s, and the evaluated time: the last four seconds are
+/// two periods. At 12 s the transient of the start still is 2 %.
 const SPEED: f64 = 0.4;
 const OMEGA: f64 = std::f64::consts::PI;
 const FROM: f64 = 22.0;
@@ -47,7 +47,7 @@ fn viscous_layers(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     let sides = [0.2, -0.2].map(|y| MaterialPoint::new(&simulation, slab, DVec3::new(0.5 * length, y, 0.0)));
     let [upper, lower] = sides;
     let (upper, lower) = (upper?, lower?);
-    // Displacement of the interface, as amplitudes of sine and cosine of the walls' velocity.
+    // Displacement of the interface, as amplitudes in phase and out of phase with the velocity of the walls.
     let (mut sine, mut cosine, mut time) = (0.0, 0.0, FROM);
     let balance = run(&mut simulation, |simulation| {
         let now = simulation.clock().time;
@@ -61,7 +61,7 @@ fn viscous_layers(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         Ok(())
     })?;
     let half = 0.5 * (time - FROM);
-    // The velocity is the displacement turned by a right angle.
+    // The velocity is 90 degrees ahead of the displacement.
     let (sine, cosine) = (sine / half * OMEGA, cosine / half * OMEGA);
     let amplitude = sine.hypot(cosine) / SPEED;
     let phase = sine.atan2(-cosine).to_degrees();

@@ -26,7 +26,7 @@ fn water_on_plate(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     let wet = 1.0 / (14 * across) as f64;
     let text = include_str!("../../../tests/validation/water_on_plate/scene.ron");
     let side = 4.0 * wet;
-    // Particles in the planes of the clamps, which are held: so the span is that of the reference.
+    // Particles lie in the planes of the clamps and are held, so that the span is that of the reference.
     let dry = 0.05 / across as f64;
     let clamp = 0.1 - 0.5 * dry;
     let mut simulation = Template::new("tests/validation/water_on_plate/scene.ron", text)

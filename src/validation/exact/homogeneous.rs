@@ -39,7 +39,7 @@ pub fn cauchy(simulation: &Simulation) -> Result<DMat3> {
     Ok(kirchhoff(simulation)? * (1.0 / volume))
 }
 
-/// Measured and reference value of which the difference is largest, in units of `scale`.
+/// Measured and reference value with the maximum difference, in units of `scale`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Worst {
     /// Measured value.
@@ -50,7 +50,7 @@ pub struct Worst {
 }
 
 impl Worst {
-    /// Takes in a value; one that is not a number is the worst.
+    /// Adds a value; NaN counts as the largest difference.
     pub fn add(&mut self, measured: f64, reference: f64, scale: f64) {
         let error = (measured - reference).abs() / scale;
         if error.is_nan() || error > self.error {
@@ -58,7 +58,7 @@ impl Worst {
         }
     }
 
-    /// The largest difference in units of the scale.
+    /// The maximum difference in units of the scale.
     pub fn error(&self) -> f64 {
         self.error
     }

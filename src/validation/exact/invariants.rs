@@ -52,7 +52,7 @@ fn block(registry: &Registry, across: usize, plugins: &str) -> Result<Simulation
     Ok(template.set("plugins", format!("[{plugins}]"))?.build(registry)?)
 }
 
-/// Net force and net torque, over the sum of the sizes of the forces.
+/// Net force and net torque, over the sum of the magnitudes of the forces.
 fn net(net: NetForce) -> [Check; 2] {
     [
         Check::below("net force over all forces", net.force, 1e-10, "exact"),
@@ -78,7 +78,7 @@ fn gradient(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     Ok(checks)
 }
 
-/// Velocities that no neighbourhood sees as affine, m/s.
+/// Velocities that are not affine in any neighbourhood, m/s.
 fn wild(x: DVec3) -> DVec3 {
     let phase = 31.0 * x.x + 17.0 * x.y;
     0.01 * DVec3::new(phase.sin(), (1.7 * phase + 0.3).cos(), 0.0)

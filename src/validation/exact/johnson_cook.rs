@@ -21,7 +21,7 @@ pub(crate) const CASE: Case = Case {
 const REFERENCE: &str = include_str!("../../../tests/validation/johnson_cook/reference.csv");
 const SOURCE: &str = "ordinary differential equation, reference.csv";
 
-/// Name in the reference, parameters, and what heats it.
+/// Name in the reference, parameters, and thermal parameters.
 const METALS: [(&str, &str, &str); 3] = [
     (
         "Al6061-T6 (Table1)",
@@ -49,7 +49,7 @@ fn johnson_cook(registry: &Registry, steps: usize) -> Result<Vec<Check>> {
             let rows = rows(name, rate)?;
             let cold = curve(registry, steps, parameters, rate)?;
             let hot = curve(registry, steps, &format!("{parameters}, {heat}"), rate)?;
-            // The row of no plastic strain lies before the first step.
+            // The row without plastic strain lies before the first step.
             for [strain, slow, fast, heated] in rows.into_iter().filter(|row| row[0] > 0.0) {
                 let (stress, _) = at(&cold, strain)?;
                 isothermal.add(stress, slow * 1e6, slow * 1e6);

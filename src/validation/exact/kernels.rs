@@ -71,7 +71,7 @@ fn mass(kernel: Kernel) -> f64 {
     (0..=count).map(|k| weight(k) * density(k)).sum::<f64>() * step / 3.0
 }
 
-/// Largest error of the slope, over W(0).
+/// Maximum error of the slope, over W(0).
 fn slope_error(kernel: Kernel) -> f64 {
     let (step, edge) = (1e-5, kernel.support_radius(1.0));
     let error = |k: i32| {
@@ -82,7 +82,7 @@ fn slope_error(kernel: Kernel) -> f64 {
     (1..199).map(error).fold(0.0, f64::max)
 }
 
-/// Largest relative error of the corrected gradient of a linear field on a disordered cloud.
+/// Maximum relative error of the corrected gradient of a linear field on a disordered cloud.
 fn gradient_error(kernel: Kernel, across: usize) -> Result<f64> {
     let mut random = Random::new(11);
     let dimension = kernel.dimension();

@@ -68,7 +68,7 @@ fn stress_and_energy(material: &Material, deformation: DMat3) -> Result<(DMat3, 
     Ok((stress[0], energy[0]))
 }
 
-/// Largest error over the stress: uniaxial tension of the reference, uniaxial strain of every law.
+/// Maximum error over the stress: uniaxial tension of the reference, uniaxial strain of every law.
 fn stretch(_: &Registry, count: usize) -> Result<Vec<Check>> {
     let mut worst = 0.0f64;
     let reference = include_str!("../../../assets/reference/neo_hookean_uniaxial.csv");
@@ -140,7 +140,7 @@ fn consistency(_: &Registry, count: usize) -> Result<Vec<Check>> {
     Ok(checks)
 }
 
-/// Stress of bodies that are held in an affine map while their reference is updated three times.
+/// Stress of bodies under a prescribed affine map whose reference is updated three times.
 fn of_bodies(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     let sheared = DMat3::from_cols(DVec3::new(1.4, 0.1, 0.0), DVec3::new(0.3, 0.7, 0.0), DVec3::Z);
     let mut checks = Vec::new();
@@ -174,7 +174,7 @@ fn of_bodies(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     Ok(checks)
 }
 
-/// A body in an affine map, after three steps of nearly no length with an update each.
+/// A body under an affine map, after three very short steps with an update each.
 fn held(registry: &Registry, across: usize, law: &str, map: DMat3) -> Result<Simulation> {
     let template = Template::new(
         "tests/validation/invariants/scene.ron",

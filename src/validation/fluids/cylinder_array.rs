@@ -25,11 +25,11 @@ pub(crate) const CASE: Case = Case {
 const RADIUS: f64 = 0.2;
 /// Force on the oil, N/m3; its density, kg/m3, and its viscosity, Pa s, are one.
 const DRIVING: f64 = 7.5;
-/// Share of the run whose mean is taken.
+/// Final fraction of the run over which means are taken.
 const FROM: f64 = 0.9;
 
-/// Drag over viscosity and mean velocity over the whole cell, with a share `c` of it solid: Sangani and
-/// Acrivos (1982).
+/// Drag over viscosity and mean velocity over the whole cell, for a solid fraction `c`: Sangani and Acrivos
+/// (1982).
 fn drag(c: f64) -> f64 {
     4.0 * PI / (-0.5 * c.ln() - 0.738 + c - 0.887 * c.powi(2) + 2.038 * c.powi(3))
 }
@@ -56,10 +56,10 @@ fn cylinder_array(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         }
         Ok(())
     })?;
-    // Cylinders of four spacings are stairs.
+    // A cylinder of few spacings is a staircase.
     let most = if across >= 80 { 0.03 } else { 0.08 };
-    // The pressure gradient that the force stands for acts on the cylinder too: drag is the force on a cell
-    // that is full.
+    // The pressure gradient that the body force replaces also acts on the cylinder: the drag is the body
+    // force on the whole cell.
     Ok(vec![
         Check::new(
             "drag over viscosity and mean velocity of the cell",

@@ -26,13 +26,13 @@ const SOURCE: &str = "experiment of MARIN";
 const HEIGHT: f64 = 0.55;
 /// Time between two samples, s.
 const EVERY: f64 = 1e-3;
-/// Half of the length of a mean over a peak, s, and the length of that over the impulse.
+/// Half of the averaging time of a peak, s, and the averaging time of the impulse.
 const HALF_PEAK: f64 = 0.01;
 const IMPULSE: f64 = 0.2;
 
-/// Tolerances of the largest 20 ms means at P1 to P3, at 27 over the height. Each alone is judged from there
-/// on: with fewer particles those of spacings that differ by a tenth differ by up to 100 %, and a spacing
-/// could be found for every wish.
+/// Tolerances of the maximum 20 ms means at P1 to P3, at 27 particles over the height. Each sensor is checked
+/// separately only from this resolution on: with fewer particles, spacings that differ by a tenth yield
+/// values that differ by up to 100 %, so that some spacing would pass any tolerance.
 const PEAKS: [f64; 3] = [0.4, 0.2, 0.2];
 
 /// Histories of the sensors P1 to P4, Pa, and of the gauges H2 and H4, m.
@@ -77,8 +77,8 @@ fn scene(registry: &Registry, spacing: f64) -> Result<Simulation> {
     Ok(built)
 }
 
-/// The checks; `coarse` is the spacing over that of 27 particles over the height, of which the tolerances
-/// are.
+/// The checks; `coarse` is the spacing over that of 27 particles over the height, at which the tolerances
+/// hold.
 fn compare(measured: &BoxHistories, reference: &BoxHistories, coarse: f64) -> Result<Vec<Check>> {
     let scale = 1000.0 * 9.81 * HEIGHT;
     let time = (HEIGHT / 9.81).sqrt();
@@ -152,7 +152,7 @@ impl BoxHistories {
     }
 }
 
-/// Largest mean over 20 ms.
+/// Maximum mean over 20 ms.
 fn largest_mean(record: &Record) -> f64 {
     let mean = |t: f64| integral(record, t - HALF_PEAK, t + HALF_PEAK) / (2.0 * HALF_PEAK);
     let last = record.0.last().map_or(0.0, |sample| sample.0) - HALF_PEAK;
@@ -166,7 +166,7 @@ fn integral(record: &Record, from: f64, to: f64) -> f64 {
     within.map(|pair| 0.5 * (pair[1].0 - pair[0].0) * (pair[0].1 + pair[1].1)).sum()
 }
 
-/// Mean of the differences of two records over the largest value of the second.
+/// Mean of the differences of two records over the maximum of the second.
 fn mean_difference(record: &Record, reference: &Record) -> f64 {
     let at = |time: f64| {
         let after = reference.0.partition_point(|sample| sample.0 < time);

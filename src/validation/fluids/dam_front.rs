@@ -22,11 +22,11 @@ const REFERENCE: &str = include_str!("../../../tests/validation/dam_front/refere
 const SOURCE: &str = "boundary elements, no friction";
 /// Depth of the water where its front is, over the width of the column: 0.02 of its height.
 const DEPTH: f64 = 0.04;
-/// Places of the front over the width of the column, and the largest error of the times at 40 particles
+/// Positions of the front over the width of the column, and the maximum error of the times at 40 particles
 /// across.
 const PLACES: [(f64, f64); 4] = [(2.0, 0.035), (3.0, 0.025), (4.0, 0.02), (5.0, 0.02)];
 
-/// How fast these errors fall, and the largest of them without a spacing.
+/// Required rate of convergence of these errors, and their maximum extrapolated to zero spacing.
 const RATE: ConvergenceRate = ConvergenceRate { per_halving: 1.6, extrapolated: 0.015 };
 
 fn dam_front(registry: &Registry, across: usize) -> Result<Vec<Check>> {
@@ -63,7 +63,7 @@ fn dam_front(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     Ok(checks)
 }
 
-/// The foremost place with the depth of the front, m: volumes are spread over two spacings to either side.
+/// The foremost position with the depth of the front, m: volumes are spread over two spacings to either side.
 fn foremost(simulation: &Simulation, water: BodyId, spacing: f64) -> Result<f64> {
     let (view, rows) = simulation.world().body_view(water);
     let (position, mass) = (view.read::<Position>()?, view.read::<Mass>()?);

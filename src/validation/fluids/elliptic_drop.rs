@@ -1,4 +1,4 @@
-//! F3: a round drop that is stretched to an ellipse.
+//! F3: a circular drop that is stretched to an ellipse.
 
 use anyhow::Result;
 use meshless_engine::glam::DVec3;

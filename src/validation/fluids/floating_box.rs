@@ -18,7 +18,7 @@ const GRAVITY: DVec3 = DVec3::new(0.0, -9.81, 0.0);
 /// Half the height of the box, m: its density is half that of water.
 const DRAUGHT: f64 = 0.05;
 const SOURCE: &str = "Archimedes";
-/// Columns of water nearer to the box than this, over its half-width, are left out.
+/// Columns of water nearer to the box than this, over its half-width, are omitted.
 const APART: f64 = 1.5;
 
 /// Height of the water away from the box, m: the top of the highest particle in every column, on average.
@@ -48,7 +48,7 @@ fn mass(simulation: &Simulation, bodies: [BodyId; 2]) -> Result<f64> {
     Ok(total)
 }
 
-/// Force on water and box from outside, N: their weight, and the opposite of their force on the tank.
+/// External force on water and box, N: their weight, and the opposite of their force on the tank.
 fn outside(simulation: &Simulation, bodies: [BodyId; 2], tank: BodyId) -> Result<DVec3> {
     let (view, rows) = simulation.world().body_view(tank);
     let (force, own) = (view.read::<Force>()?, view.read::<Mass>()?);

@@ -28,7 +28,7 @@ fn laminar_flows(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     Ok(checks)
 }
 
-/// `lattice` is that of the start, in place of the irregular one of the scene.
+/// `lattice` is the initial one, in place of the irregular one of the scene.
 fn taylor_green(registry: &Registry, across: usize, lattice: Option<&str>) -> Result<Vec<Check>> {
     let path = "tests/validation/taylor_green/scene.ron";
     let text = include_str!("../../../tests/validation/taylor_green/scene.ron");
@@ -37,7 +37,7 @@ fn taylor_green(registry: &Registry, across: usize, lattice: Option<&str>) -> Re
         template = template.set("bodies.fluid.lattice", lattice)?;
     }
     let mut simulation = template.build(registry)?;
-    // What a lattice loses as it breaks up is noise, which the leapfrog follows less well.
+    // The energy that a lattice loses as it breaks up is noise, which the leapfrog scheme resolves less well.
     let (start_from, kind) = if lattice.is_some() {
         ("a square lattice", Kind::Inelastic)
     } else {

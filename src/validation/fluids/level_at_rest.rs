@@ -1,5 +1,4 @@
-//! F15: how high water stands once it has come to rest, with and without shifting, in two and three
-//! dimensions.
+//! F15: the level of water at rest, with and without shifting, in two and three dimensions.
 
 use anyhow::{Result, ensure};
 use meshless_engine::plugin::Registry;
@@ -20,7 +19,7 @@ pub(crate) const CASE: Case = Case {
 
 /// Area of the water over the length of the tank, m.
 const LEVEL: f64 = 0.2;
-/// Fineness over which a run in three dimensions has its whole length, and the end of shorter ones, s.
+/// Resolution from which a three-dimensional run has its full duration, and the end of shorter runs, s.
 const FINE: usize = 20;
 const SHORT: f64 = 6.0;
 const SHIFTED: &str =
@@ -29,7 +28,7 @@ const SHIFTED: &str =
 fn level_at_rest(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     let mut checks = Vec::new();
     for solid in [false, true] {
-        // In three dimensions the coarse run is the shifted one alone.
+        // In three dimensions the coarse run is only the one with shifting.
         for shifted in [false, true].into_iter().filter(|&shifted| shifted || !solid || across >= FINE) {
             checks.extend(settle(registry, across, solid, shifted)?);
         }

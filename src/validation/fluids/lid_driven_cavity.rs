@@ -1,4 +1,4 @@
-//! F6: the flow in a cavity whose lid slides along.
+//! F6: the flow in a lid-driven cavity.
 
 use anyhow::{Context, Result};
 use meshless_engine::glam::{DMat3, DVec3};
@@ -24,7 +24,7 @@ const V_HORIZONTAL: &str = include_str!("../../../tests/validation/lid_driven_ca
 /// Time between two samples of the steady flow, s.
 const EVERY: f64 = 0.25;
 
-/// One flow: its Reynolds number with lid and cavity of unity, and when it is looked at.
+/// One flow: its Reynolds number with unit lid velocity and cavity width, and the time of evaluation.
 struct Flow {
     reynolds: u32,
     first: f64,
@@ -36,7 +36,7 @@ fn cavity(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     let slow =
         Flow { reynolds: 100, first: 10.0, end: 14.0, tolerance: if across < 50 { 0.06 } else { 0.03 } };
     let mut checks = flow(registry, across, &slow)?;
-    // The thin layers of the faster flow need the finer lattice.
+    // The thin layers of the faster flow need a finer lattice.
     if across >= 100 {
         checks.extend(flow(
             registry,

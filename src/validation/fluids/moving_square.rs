@@ -1,4 +1,4 @@
-//! F10: a square that is set in motion in a box, SPHERIC benchmark 6.
+//! F10: a square that starts to move in a box, SPHERIC benchmark 6.
 
 use anyhow::{Context, Result};
 use meshless_engine::formulations::fluid::FlowCloud;
@@ -22,15 +22,14 @@ pub(crate) const CASE: Case = Case {
 const MOTION: &str = include_str!("../../../tests/validation/moving_square/motion.csv");
 const REFERENCE: &str = include_str!("../../../tests/validation/moving_square/reference.csv");
 const SOURCE: &str = "finite differences, reference.csv";
-/// Times of the means, s: while the square is accelerated, and over the time in which sound crosses the box
-/// and comes back.
+/// Averaging intervals, s: during the acceleration of the square, and over the time in which sound crosses
+/// the box and comes back.
 const START: [f64; 2] = [0.4, 0.6];
 const STEADY: [f64; 2] = [1.5, 2.17];
-/// Tolerances at 40 across; they are in proportion to the spacing. The error of friction is over the whole
-/// drag.
+/// Tolerances at 40 across, proportional to the spacing. The error of friction is relative to the whole drag.
 const DRAG: f64 = 0.05;
 const FRICTION: f64 = 0.1;
-/// From a force on the half of the square, N, to the drag over rho U^2 L / 2.
+/// Factor from a force on the half of the square, N, to the drag over rho U^2 L / 2.
 const PER_FORCE: f64 = -4.0;
 
 fn moving_square(registry: &Registry, across: usize) -> Result<Vec<Check>> {
@@ -89,7 +88,7 @@ fn points(csv: &str) -> String {
     format!("(points: [{}])", lines.join(", "))
 }
 
-/// Drag of the pressure and of friction.
+/// Drag by pressure and by friction.
 fn drag(simulation: &Simulation, square: BodyId) -> Result<[f64; 2]> {
     let forces = simulation.resources().get::<FlowCloud>().forces_on(square).context("no fluid")?;
     let (all, friction) =

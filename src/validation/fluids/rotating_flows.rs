@@ -1,4 +1,4 @@
-//! F12: torques between cylinders of which one turns, and a disc that spins down in oil.
+//! F12: torques between cylinders of which one rotates, and the spin-down of a disc in oil.
 
 use anyhow::{Context, Result};
 use meshless_engine::formulations::fluid::FlowCloud;
@@ -59,7 +59,7 @@ fn cylinders(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         Ok(())
     })?;
     let viscosity = simulation.ledger().total_named("viscosity");
-    // The power of the torque over four seconds.
+    // The work of the torque over four seconds.
     let work = TORQUE * 4.0;
     let source = "exact solution of Couette";
     let of = |name: &str, sum: f64| {

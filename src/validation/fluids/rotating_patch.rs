@@ -1,4 +1,4 @@
-//! F9: a square patch of fluid that turns, without walls.
+//! F9: a rotating square patch of fluid, without walls.
 
 use anyhow::{Context, Result};
 use meshless_engine::formulations::fluid::FlowCloud;
@@ -22,13 +22,13 @@ pub(crate) const CASE: Case = Case {
 
 const REFERENCE: &str = include_str!("../../../tests/validation/rotating_patch/reference.csv");
 const SOURCE: &str = "boundary elements, reference.csv";
-/// Tolerances at 50 across; they are in proportion to the spacing.
+/// Tolerances at 50 across, proportional to the spacing.
 const SIDE: f64 = 0.02;
 const PRESSURE: f64 = 0.1;
-/// Resolution from which on the patch is asked to stay in one piece, and until when, s.
+/// Resolution from which the patch must stay in one piece, and until which time, s.
 const FINE: usize = 50;
 const LAST: f64 = 4.0;
-/// Half of the time over which the pressure is a mean, s, and radius about the centre, m.
+/// Half of the averaging time of the pressure, s, and radius about the centre, m.
 const WINDOW: f64 = 0.1;
 const MIDDLE: f64 = 0.06;
 
@@ -64,7 +64,8 @@ fn rotating_patch(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         let name = format!("nearest side at omega t = {time}, over L");
         let exact = reference("r_min/L")?;
         checks.push(Check::new(name, side, exact, tolerance, "1", SOURCE).converging());
-        // The pressure rises by rho omega^2 r^2 / 2 from the centre: what the mean over the disc is above it.
+        // The pressure rises by rho omega^2 r^2 / 2 from the centre, so that its mean over the disc is larger
+        // than that at the centre by half of the rise at the radius.
         let centre = mean - 0.25 * MIDDLE * MIDDLE;
         let tolerance = Tolerance::Relative(PRESSURE * coarse);
         let name = format!("pressure in the middle at omega t = {time}, over rho omega^2 L^2");
@@ -101,7 +102,7 @@ fn pressure_in_the_middle(simulation: &Simulation, patch: BodyId) -> Result<f64>
     Ok(inside.iter().sum::<f64>() / inside.len() as f64)
 }
 
-/// Least distance of the surface from the centre, m, as a mean over the four sides: the surface is where the
+/// Minimum distance of the surface from the centre, m, averaged over the four sides: at the surface the
 /// volume of particles over that of space falls to a half.
 fn nearest_side(simulation: &Simulation, patch: BodyId) -> Result<f64> {
     let positions = positions(simulation, patch)?;
@@ -122,7 +123,7 @@ fn nearest_side(simulation: &Simulation, patch: BodyId) -> Result<f64> {
     Ok((0..30).map(mean).fold(f64::INFINITY, f64::min))
 }
 
-/// Share of the particles in the largest group whose members are nearer to each other than `gap`, m.
+/// Fraction of the particles in the largest group whose members are nearer to each other than `gap`, m.
 fn largest_piece(simulation: &Simulation, patch: BodyId, gap: f64) -> Result<f64> {
     let positions = positions(simulation, patch)?;
     let mut waiting: Vec<usize> = (0..positions.len()).collect();

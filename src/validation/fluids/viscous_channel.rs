@@ -9,15 +9,15 @@ use crate::check::{Check, Tolerance};
 use crate::measure::{body, run};
 use crate::template::Template;
 
-/// Tolerance of the flux at 40 across; it is in proportion to the spacing.
+/// Tolerance of the flux at 40 across, proportional to the spacing.
 const FLUX: f64 = 0.015;
-/// Particles across from which on a run takes the whole time.
+/// Particles across from which a run has its full duration.
 const FINE: usize = 20;
-/// Length of the run over H^2 / nu, whole and short. Rows break up within the first tenth.
+/// Duration of the run over H^2 / nu, full and short. Rows break up within the first tenth.
 const WHOLE: f64 = 3.0;
 const SHORT: f64 = 0.4;
 
-/// Flux over that of the exact profile, as a mean over the last quarter of the run.
+/// Flux over that of the exact profile, averaged over the last quarter of the run.
 pub(super) fn flux(registry: &Registry, across: usize, reynolds: f64, lattice: &str) -> Result<Check> {
     let spacing = 1.0 / across as f64;
     let (length, side) = (8.0 * spacing.min(0.125), 4.0 * spacing);

@@ -21,9 +21,9 @@ pub(crate) const CASE: Case = Case {
     run: vortices,
 };
 
-/// Tolerance of the kinetic energy at 100 across; it is in proportion to the spacing.
+/// Tolerance of the kinetic energy at 100 across, proportional to the spacing.
 const ENERGY: f64 = 0.015;
-/// Tolerance of the effective viscosity with ten spacings in the core, in proportion to the spacing.
+/// Tolerance of the effective viscosity with ten spacings in the core, proportional to the spacing.
 const VISCOSITY: f64 = 0.03;
 
 fn vortices(registry: &Registry, across: usize) -> Result<Vec<Check>> {
@@ -66,7 +66,7 @@ fn taylor_green(registry: &Registry, across: usize, reynolds: f64, lattice: &str
         "1",
         "exp(-16 pi^2 t / Re), exact solution",
     );
-    // What breaks up a square lattice does not depend on the spacing.
+    // The break-up of a square lattice does not depend on the spacing.
     Ok(if lattice == "Square" { check } else { check.converging() })
 }
 
@@ -93,7 +93,7 @@ fn lamb_oseen(registry: &Registry, across: usize) -> Result<Check> {
         let exact = |r: f64| 0.1 / r * (1.0 - (-r * r / core).exp());
         swirl.iter().map(|&(r, u)| (u - exact(r)).powi(2)).sum()
     };
-    let core = least(misfit, 0.005, 0.06);
+    let core = minimizer(misfit, 0.005, 0.06);
     let viscosity = (core - 0.01) / (4.0 * simulation.clock().time);
     let check = Check::new(
         "effective viscosity of the Lamb-Oseen vortex",
@@ -106,8 +106,8 @@ fn lamb_oseen(registry: &Registry, across: usize) -> Result<Check> {
     Ok(check.converging())
 }
 
-/// Where a function has its least value, by sections.
-fn least(of: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+/// Position of the minimum of a function, by trisection.
+fn minimizer(of: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     for _ in 0..60 {
         let third = (high - low) / 3.0;
         if of(low + third) < of(high - third) { high -= third } else { low += third }

@@ -1,4 +1,4 @@
-//! F4: a standing wave that friction damps, and the period of sloshing.
+//! F4: a standing wave damped by viscosity, and the period of sloshing.
 
 use anyhow::{Context, Result};
 use meshless_engine::plugin::Registry;
@@ -46,7 +46,7 @@ fn standing_wave(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         row.map(|row| row.1).context("the reference lacks this Reynolds number")
     };
     let period = of_reference("period_s")?;
-    // Over a whole period the exchange with the height of the wave drops out of the mean.
+    // Over a whole period the exchange with potential energy averages out.
     let mean = |from: f64| {
         let within = |t: f64| (from * period..(from + 1.0) * period).contains(&t);
         let values: Vec<f64> = kinetic.0.iter().filter(|(t, _)| within(*t)).map(|sample| sample.1).collect();

@@ -17,9 +17,10 @@ pub(crate) const CASE: Case = Case {
     run: wedge_entry,
 };
 
-/// Half width of the wetted wedge at the end over the spacing is the resolution; at 13 the spacing is 20 mm.
+/// The resolution is the half width of the wetted wedge at the end over the spacing; at 13 the spacing is 20
+/// mm.
 const SPACING: f64 = 0.26;
-/// Time at which the tip touches the water, s.
+/// Time at which the apex touches the water, s.
 const TOUCH: f64 = 0.005;
 /// Force over rho V^3 t of a wedge of 30 degrees.
 const FORCE: f64 = 14.139;

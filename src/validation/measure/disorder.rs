@@ -1,11 +1,11 @@
-//! How far particles are from the order that their deformation gradients say.
+//! Disorder of particles: deviation of their positions from their deformation gradients.
 
 use anyhow::Result;
 use meshless_engine::glam::DVec3;
 use meshless_engine::simulation::Simulation;
 use meshless_engine::world::{BodyId, DeformationGradient, Position, ReferencePosition, SupportRadius};
 
-/// The pairs of a body within the support of the reference configuration.
+/// The pairs of a body within the kernel support of the reference configuration.
 pub struct Disorder {
     body: BodyId,
     pairs: Vec<(u32, u32)>,
@@ -45,7 +45,7 @@ impl Disorder {
         self.pairs.len() as f64 / simulation.world().body(self.body).rows.len() as f64
     }
 
-    /// Root mean square of |F X - x| / |X| over all pairs: below 0.05 particles are in order, above 0.3 they
+    /// Root mean square of |F X - x| / |X| over all pairs: below 0.05 particles are ordered, above 0.3 they
     /// are not.
     pub fn measure(&self, simulation: &Simulation) -> Result<f64> {
         let mut sum = 0.0;
@@ -55,8 +55,8 @@ impl Disorder {
         Ok((sum / self.pairs.len() as f64).sqrt())
     }
 
-    /// Least |x| / |F X| of all pairs: below one half, particles have come closer than their deformation
-    /// says.
+    /// Minimum |x| / |F X| of all pairs: below one half, particles are closer than their deformation
+    /// gradients imply.
     pub fn closest(&self, simulation: &Simulation) -> Result<f64> {
         let mut least = f64::INFINITY;
         self.visit(simulation, |_, expected, actual| {

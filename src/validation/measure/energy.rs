@@ -1,15 +1,15 @@
 //! The energy balance of a run, and its tolerance for each kind of run.
 //!
-//! Every energy has an account, so that the residual is the error of the leapfrog. It is that of the square
-//! of the step where bodies and flows move smoothly, and that of single steps where something begins or ends
-//! within one: a touch, a yield, a bond that breaks, a reference that is renewed. The largest error of the
-//! run counts, over the largest energy of an account in the run.
+//! Every energy has an account, so that the residual is the error of the leapfrog scheme. It is second order
+//! in the step where bodies and flows move smoothly. Where something begins or ends within a step - contact,
+//! yield, failure of a bond, an update of the reference - it is the error of single steps. The measure is the
+//! maximum error over the maximum energy of an account in the run.
 
 use meshless_engine::simulation::Simulation;
 
 use crate::check::Check;
 
-/// What happens in a run, as far as the energy balance is concerned.
+/// Kind of a run, which determines the tolerance of its energy balance.
 #[derive(Clone, Copy)]
 pub enum Kind {
     /// Bodies deform and swing, slide along each other or lie in a flow; flows have surfaces, waves and jets.
@@ -17,12 +17,12 @@ pub enum Kind {
     /// Bodies yield or break, or slip particle by particle over the edge of a tool; a lattice of fluid
     /// particles breaks up.
     Inelastic,
-    /// Bodies hit each other, their references are renewed every few steps, or particles leave the run.
+    /// Bodies collide, their references are updated every few steps, or particles leave the run.
     Abrupt,
 }
 
 impl Kind {
-    /// Largest error of the energy balance over the largest energy.
+    /// Maximum error of the energy balance over the maximum energy.
     fn limit(self) -> f64 {
         match self {
             Self::Smooth => 1e-3,
@@ -35,24 +35,24 @@ impl Kind {
 /// The energy balance of a run.
 #[derive(Clone, Copy, Default)]
 pub struct Balance {
-    /// Largest error, J.
+    /// Maximum error, J.
     error: f64,
-    /// Largest energy that any account has held, J.
+    /// Maximum energy of any account, J.
     scale: f64,
 }
 
 impl Balance {
-    /// That of a run which has not come to its end: it passes no check.
+    /// The balance of a run that has not reached its end: it passes no check.
     pub const UNKNOWN: Self = Self { error: f64::NAN, scale: 1.0 };
 
-    /// Takes notice of a step.
+    /// Updates the maxima after a step.
     pub fn see(&mut self, simulation: &Simulation) {
         let ledger = simulation.ledger();
         self.error = self.error.max(ledger.balance_error().abs());
         self.scale = ledger.largest();
     }
 
-    /// Compares it with the tolerance of such a run.
+    /// Compares the balance with the tolerance of this kind of run.
     pub fn check(self, kind: Kind) -> Check {
         Check::below("energy balance error", self.error / self.scale, kind.limit(), "every joule is booked")
     }

@@ -1,4 +1,4 @@
-//! What cases measure, and how they run.
+//! Measurements and runs of cases.
 
 mod disorder;
 mod energy;

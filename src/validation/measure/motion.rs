@@ -15,8 +15,8 @@ pub fn body(simulation: &Simulation, name: &str) -> Result<BodyId> {
     Ok(BodyId(k.with_context(|| format!("the scene has no body `{name}`"))?))
 }
 
-/// A material point that need not be a particle: the nearest particle carries it by its deformation gradient;
-/// of equally near ones the mean counts, so that a symmetric motion is measured symmetrically.
+/// A material point that need not be a particle: the nearest particle moves it by its deformation gradient.
+/// Equally near particles are averaged, so that a symmetric motion is measured symmetrically.
 pub struct MaterialPoint {
     body: BodyId,
     rows: Vec<usize>,
@@ -24,7 +24,7 @@ pub struct MaterialPoint {
 }
 
 impl MaterialPoint {
-    /// The point of a body that is at `point` in the reference configuration.
+    /// The point of a body with the position `point` in the reference configuration.
     pub fn new(simulation: &Simulation, body: BodyId, point: DVec3) -> Result<Self> {
         let (view, rows) = simulation.world().body_view(body);
         let reference = view.read::<ReferencePosition>()?;
@@ -34,7 +34,7 @@ impl MaterialPoint {
         Ok(Self { body, rows: rows.filter(|&row| distance(row) < least + margin).collect(), point })
     }
 
-    /// Where it is now, m.
+    /// Current position, m.
     pub fn position(&self, simulation: &Simulation) -> Result<DVec3> {
         let (view, _) = simulation.world().body_view(self.body);
         let reference = view.read::<ReferencePosition>()?;
@@ -44,22 +44,22 @@ impl MaterialPoint {
         Ok(self.rows.iter().map(carried).sum::<DVec3>() / self.rows.len() as f64)
     }
 
-    /// Force of the condition that holds its particles, N: minus the force of the bonds.
+    /// Reaction of the condition that holds its particles, N: minus the force of the bonds.
     pub fn force(&self, simulation: &Simulation) -> Result<DVec3> {
         let (view, _) = simulation.world().body_view(self.body);
         let force = view.read::<Force>()?;
         Ok(self.rows.iter().map(|&row| -force[row].0).sum())
     }
 
-    /// How far it has moved, m.
+    /// Displacement, m.
     pub fn displacement(&self, simulation: &Simulation) -> Result<DVec3> {
         Ok(self.position(simulation)? - self.point)
     }
 }
 
-/// What roundings in single precision may change of the momentum of a flow in a second, N: 3e-9 of the
-/// magnitudes of the pressure forces of all pairs with 32 k particles. Those of different particles do not
-/// know of each other, so that the share falls with the root of their number.
+/// Bound on the change of momentum of a flow per second by rounding in single precision, N: 3e-9 of the
+/// magnitudes of the pressure forces of all pairs with 32 k particles. The errors of different particles are
+/// independent, so that the bound falls with the root of their number.
 pub fn rounded_forces(simulation: &Simulation) -> f64 {
     let cloud = simulation.resources().get::<FlowCloud>();
     let records = cloud.records();

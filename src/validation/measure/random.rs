@@ -1,7 +1,7 @@
-//! Numbers that look random and are the same in every run.
+//! Pseudo-random numbers, the same in every run.
 
-/// A sequence of numbers in [0, 1): a linear congruence, of which the upper bits are used (the constants of
-/// Knuth's MMIX).
+/// A sequence of numbers in [0, 1): a linear congruential generator whose upper bits are used (the constants
+/// of Knuth's MMIX).
 pub struct Random(u64);
 
 impl Random {

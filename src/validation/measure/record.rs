@@ -1,4 +1,4 @@
-//! Records over time: values from references, extremes, crossings.
+//! Records over time: values from references, maxima, crossings.
 
 use anyhow::{Context, Result, ensure};
 
@@ -12,7 +12,7 @@ impl Record {
         self.0.push((time, value));
     }
 
-    /// Time and value of the largest value, from the parabola through three samples.
+    /// Time and value of the maximum, from the parabola through three samples.
     pub fn maximum(&self) -> Result<(f64, f64)> {
         let largest = self.0.windows(3).max_by(|a, b| a[1].1.total_cmp(&b[1].1));
         let inner = largest.filter(|w| w[1].1 >= w[0].1 && w[1].1 > w[2].1);
@@ -42,8 +42,8 @@ impl Record {
         self
     }
 
-    /// Middle of the time in which the value is above `share` of its largest value, s. Where a peak is flat,
-    /// this is well-defined and the time of the largest value is not.
+    /// Middle of the time in which the value is above `share` of its maximum, s. It is well-defined for a
+    /// flat peak, where the time of the maximum is not.
     pub fn middle_of_peak(&self, share: f64) -> Result<f64> {
         let (_, largest) = self.maximum()?;
         let level = share * largest;

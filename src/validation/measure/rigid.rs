@@ -1,4 +1,4 @@
-//! What cases measure on rigid bodies.
+//! Measurements on rigid bodies.
 
 use anyhow::{Context, Result};
 use meshless_engine::rigid::{RigidBodies, RigidState};
@@ -6,7 +6,7 @@ use meshless_engine::simulation::Simulation;
 
 use super::motion::body;
 
-/// State of the rigid body of that name.
+/// State of the rigid body with this name.
 pub fn state(simulation: &Simulation, name: &str) -> Result<RigidState> {
     let id = body(simulation, name)?;
     let bodies = simulation.resources().get::<RigidBodies>();

@@ -1,11 +1,11 @@
-//! Runs of a case: to the end, up to a time, until it is at rest.
+//! Runs of a case: to the end, up to a time, until rest.
 
 use anyhow::{Result, ensure};
 use meshless_engine::simulation::Simulation;
 
 use super::energy::Balance;
 
-/// Runs until the bodies are at rest, which a relaxation has to notice before the end.
+/// Runs until the bodies are at rest, which a relaxation must detect before the end.
 pub fn relax(simulation: &mut Simulation) -> Result<()> {
     simulation.run(|_| true)?;
     let reason = simulation.stop_reason();
@@ -19,7 +19,7 @@ pub fn run_until(simulation: &mut Simulation, time: f64) -> Result<()> {
     Ok(())
 }
 
-/// Runs to the end, calls `see` after every step, and gives the energy balance.
+/// Runs to the end, calls `see` after every step, and returns the energy balance.
 pub fn run(simulation: &mut Simulation, mut see: impl FnMut(&Simulation) -> Result<()>) -> Result<Balance> {
     let mut balance = Balance::default();
     simulation.start()?;

@@ -1,4 +1,4 @@
-//! S22: two equal bars meet.
+//! S22: impact of two equal bars.
 
 use anyhow::{Context, Result};
 use meshless_engine::plugin::Registry;

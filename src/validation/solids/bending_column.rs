@@ -1,4 +1,4 @@
-//! S11: a column that is thrown sideways and bends to half its height.
+//! S11: a column with an initial sideways velocity that bends to half its height.
 
 use anyhow::Result;
 use meshless_engine::glam::DVec3;

@@ -20,7 +20,7 @@ pub(crate) const CASE: Case = Case {
 const REFERENCE: &str = include_str!("../../../tests/validation/bending_cylinder/reference.csv");
 const SOURCE: &str = "spectral elements, reference.csv";
 
-/// Largest deflection of the middle of the top, m, its time, s, and the energy balance.
+/// Maximum deflection of the middle of the top, m, its time, s, and the energy balance.
 fn deflection(
     registry: &Registry,
     across: usize,

@@ -17,15 +17,14 @@ pub(crate) const CASE: Case = Case {
     run: cantilever,
 };
 
-/// Load on the top right particle, N per metre of thickness: so small, for 1e-6 m, that the bending is
-/// linear.
+/// Load on the top right particle, N per metre of thickness: its deflection of 1e-6 m is in the linear range.
 const LOAD: f64 = 50.0;
 /// Plane strain elasticity, kN/mm for a thickness of 1 mm.
 const ELASTICITY: f64 = 0.05317;
 /// The same load, on the corner cell, and the clamp at the last clamped centres, by finite elements:
 /// particles across, kN/mm.
 const SAME_LOAD: [(usize, f64); 3] = [(4, 0.053186739), (8, 0.053144471), (16, 0.053106957)];
-/// Tolerance from that many particles across.
+/// Tolerance from this number of particles across.
 const TOLERANCES: [(usize, f64); 3] = [(32, 0.015), (16, 0.02), (0, 0.04)];
 /// Stiffness of the discrete equations by a direct solution of the sparse linear system: particles across,
 /// coefficient of the control, kN/mm.
@@ -45,8 +44,8 @@ fn cantilever(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     let tolerance = Tolerance::Relative(tolerance);
     let mut checks = vec![Check::new("stiffness", stiffness, ELASTICITY, tolerance, "kN/mm", source)];
     for (_, reference) in SAME_LOAD.into_iter().filter(|(n, _)| *n == across) {
-        // A force on a point indents it, without bound as the spacing falls: only with the same share of the
-        // end loaded does the error fall to zero.
+        // The indentation under a point load grows without bound as the spacing falls: the error converges to
+        // zero only if the loaded fraction of the end stays the same.
         let name = "stiffness with the same loaded cell";
         checks.push(Check::new(name, stiffness, reference, tolerance, "kN/mm", source).converging());
     }

@@ -55,8 +55,8 @@ fn cantilever_large(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     Ok(checks)
 }
 
-/// Largest disorder on the way, without control. A run that particles which pair have ended counts up to
-/// there.
+/// Maximum disorder during the run, without control. A run that is ended by pairing of particles counts up to
+/// its end.
 fn disorder_without(registry: &Registry, across: usize) -> Result<f64> {
     let (mut simulation, disorder) = beam(registry, across, 0.0)?;
     let mut largest = 0.0f64;

@@ -37,13 +37,13 @@ struct BarMotion {
 }
 
 impl BarMotion {
-    /// The largest and the smallest displacement of the end.
+    /// The maximum and the minimum displacement of the end.
     fn extremes(&self) -> (f64, f64) {
         let values = || self.end.0.iter().map(|sample| sample.1);
         (values().fold(f64::MIN, f64::max), values().fold(f64::MAX, f64::min))
     }
 
-    /// Mean displacement of the end while it stands still.
+    /// Mean displacement of the end while it is at rest.
     fn plateau(&self) -> f64 {
         let still = |sample: &&(f64, f64)| (0.35..1.65).contains(&(sample.0 * WAVE));
         let values: Vec<f64> = self.end.0.iter().filter(still).map(|sample| sample.1).collect();
@@ -51,7 +51,7 @@ impl BarMotion {
     }
 }
 
-/// Runs the bar; a run that breaks off has broken.
+/// Runs the bar; a run that stops with an error counts as fully disordered.
 fn bar(registry: &Registry, along: usize, formulation: &str, plugins: &str) -> Result<BarMotion> {
     let spacing = 1.0 / along as f64;
     let mut simulation = Template::new(

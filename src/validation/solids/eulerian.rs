@@ -1,4 +1,4 @@
-//! Cases of solids with Eulerian bodies in the place of total-Lagrangian ones, and elastic tension (S20).
+//! Cases of solids with Eulerian bodies instead of total-Lagrangian ones, and elastic tension (S20).
 
 use anyhow::Result;
 use meshless_engine::glam::DMat3;
@@ -106,7 +106,7 @@ fn oscillating_plate(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     Ok(checks)
 }
 
-/// Free length, m, and strain up to which it is drawn.
+/// Free length, m, and final nominal strain.
 const LENGTH: f64 = 0.04;
 const STRAIN: f64 = 0.45;
 /// Strain at which a body without control has fractured.
@@ -130,8 +130,8 @@ fn tension(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     ])
 }
 
-/// Draws the plate to a strain; gives the axial Cauchy stress in its middle, and the disorder of the free
-/// part.
+/// Stretches the plate to a strain; returns the axial Cauchy stress in its middle, and the disorder of the
+/// free part.
 fn drawn(registry: &Registry, across: usize, control: &str, strain: f64) -> Result<(f64, f64)> {
     let spacing = 0.02 / across as f64;
     let clamps = 3.0 * spacing;

@@ -1,4 +1,4 @@
-//! S8: a thin plate that swings with a large amplitude.
+//! S8: large-amplitude oscillation of a thin plate.
 
 use anyhow::{Context, Result};
 use meshless_engine::glam::DVec3;
@@ -19,14 +19,14 @@ pub(crate) const CASE: Case = Case {
 
 const SOURCE: &str = "spectral elements, reference.csv";
 
-/// A plate that swings.
+/// A plate that oscillates.
 #[derive(Clone, Copy)]
 pub(crate) struct SwingingPlate {
-    /// m.
+    /// Thickness, m.
     pub thickness: f64,
-    /// s.
+    /// Period, s.
     pub period: f64,
-    /// m.
+    /// Amplitude, m.
     pub amplitude: f64,
 }
 
@@ -36,13 +36,13 @@ pub(crate) const PLATES: [SwingingPlate; 2] = [
 ];
 
 fn oscillating_plate(registry: &Registry, across: usize) -> Result<Vec<Check>> {
-    // Decay is seen over 2.5 s; one swing is enough for the rest, and for the cheapest run.
+    // Decay is measured over 2.5 s; one oscillation is enough for the rest, and for the cheapest run.
     let long = across > CASE.ci_resolution;
     let plates = PLATES.iter().map(|of| plate(registry, across, *of, long));
     Ok(plates.collect::<Result<Vec<_>>>()?.concat())
 }
 
-/// Runs the plate of a thickness, with its period and amplitude; `long` enough to see it decay.
+/// Runs the plate of a thickness, with its period and amplitude; `long` enough to measure its decay.
 pub(super) fn plate(
     registry: &Registry,
     across: usize,

@@ -26,27 +26,27 @@ pub(crate) const EULERIAN: Case =
 pub(crate) const UPDATED: Case =
     Case { id: "S1U", title: "breathing patch, updated-Lagrangian", run: updated_patch, ..CASE };
 
-/// Period of the mode that changes the area most, s.
+/// Period of the mode with the largest change of area, s.
 const PERIOD: f64 = 1.5412716;
-/// Largest relative drift of the energy.
+/// Maximum relative drift of the energy.
 const ENERGY: f64 = 0.01;
-/// Periods that the run lasts.
+/// Duration of the run in periods.
 const PERIODS: f64 = 200.0;
 
-/// Coefficient of the control that scenes get unless they say otherwise, which is best for bending.
+/// Default coefficient of the hourglass control, which is best for bending.
 const DEFAULT: f64 = 5.0;
-/// One that keeps particles in their places over hundreds of periods.
+/// Coefficient that keeps particles in order over hundreds of periods.
 const STIFF: f64 = 25.0;
 
 /// Histories of a run.
 struct PatchHistory {
     /// Mean of det F over the volume.
     dilatation: Record,
-    /// Largest disorder.
+    /// Maximum disorder.
     disorder: f64,
-    /// Least distance of two neighbours as a share of the one that the deformation gradient says.
+    /// Minimum distance of two neighbours over the distance that the deformation gradient implies.
     closest: f64,
-    /// Largest relative change of the energy.
+    /// Maximum relative change of the energy.
     energy: f64,
     /// Whether the run has reached its end.
     end: Result<()>,
@@ -78,7 +78,8 @@ fn patch(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     Ok(checks)
 }
 
-/// The patch as an Eulerian body. Over 200 periods F parts from the places, so that its disorder is no check.
+/// The patch as an Eulerian body. Over 200 periods F drifts away from the positions, so that its disorder is
+/// not checked.
 fn eulerian_patch(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     let history = breathe(registry, across, PatchControl::Eulerian, PERIODS)?;
     let closest = history.closest;
@@ -122,9 +123,9 @@ impl PatchHistory {
 enum PatchControl {
     /// With this coefficient, and the formulation of the registry.
     Alpha(f64),
-    /// By the default of updated-Lagrangian bodies.
+    /// With the default of updated-Lagrangian bodies.
     Updated,
-    /// By the default of Eulerian bodies.
+    /// With the default of Eulerian bodies.
     Eulerian,
 }
 

@@ -19,8 +19,8 @@ pub(crate) const CASE: Case = Case {
 /// Radius of the hole, m, and tension, Pa.
 const RADIUS: f64 = 0.03;
 const TENSION: f64 = 100.0;
-/// Stress at the edge of a hole of .3 of the width over that far away: Howland, Phil. Trans. R. Soc. A 229
-/// (1930) 49.
+/// Stress at the edge of a hole with a diameter of 0.3 of the width over the remote stress: Howland, Phil.
+/// Trans. R. Soc. A 229 (1930) 49.
 const FACTOR: f64 = 3.368;
 
 /// `per_radius` is the number of particles along the radius of the hole.

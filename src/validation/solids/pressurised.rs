@@ -1,4 +1,4 @@
-//! S23: a thick ring, a tube and a hollow sphere under internal pressure, which acts through their surfaces.
+//! S23: a thick ring, a tube and a hollow sphere under internal pressure on their surfaces.
 
 use anyhow::{Result, ensure};
 use meshless_engine::glam::DVec3;
@@ -69,7 +69,7 @@ struct PressurisedShell {
     tolerance: f64,
     /// The radial displacement at a radius, m.
     exact: fn(f64) -> f64,
-    /// Distance of a place from the axis or the centre, m.
+    /// Distance of a point from the axis or the centre, m.
     radius: fn(DVec3) -> f64,
 }
 
@@ -109,12 +109,11 @@ fn sphere(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     Ok(checks)
 }
 
-/// Number of ways from the cavity to the outer side of the hollow sphere that its scene has probes at the
-/// ends of.
+/// Number of radial lines from the cavity to the outer surface of the hollow sphere with probes at both ends.
 const WAYS: usize = 7;
 
-/// The radial displacement of the surface of the cavity and of the outer side, as the mean at the ends of
-/// some ways, whose probes show both ends.
+/// The radial displacement of the surface of the cavity and of the outer surface: the mean over the probes at
+/// the ends of some radial lines.
 fn at_the_surface(simulation: &Simulation, across: usize) -> Result<Vec<Check>> {
     let mut means = [0.0; 2];
     for way in 1..=WAYS {

@@ -17,11 +17,11 @@ pub(crate) const CASE: Case =
 /// State of the block at a compression.
 struct PunchStage {
     compression: f64,
-    /// Reaction, N per metre of thickness: corner radius and mesh to zero.
+    /// Reaction, N per metre of thickness, extrapolated to zero corner radius and mesh size.
     reaction: f64,
     /// Half width in the middle, m.
     half_width: f64,
-    /// Largest relative error.
+    /// Maximum relative error.
     tolerance: f64,
 }
 
@@ -29,15 +29,14 @@ const STAGES: [PunchStage; 5] = [
     PunchStage { compression: 0.1, reaction: 8.20e5, half_width: 3.266e-3, tolerance: 0.03 },
     PunchStage { compression: 0.2, reaction: 1.691e6, half_width: 3.571e-3, tolerance: 0.03 },
     PunchStage { compression: 0.3, reaction: 2.620e6, half_width: 3.889e-3, tolerance: 0.03 },
-    // Asked for are 3 % to 30 % and 5 % at 50 %.
+    // Required are 3 % up to 30 % compression and 5 % at 50 %.
     PunchStage { compression: 0.4, reaction: 3.705e6, half_width: 4.193e-3, tolerance: 0.04 },
     PunchStage { compression: 0.5, reaction: 5.09e6, half_width: 4.478e-3, tolerance: 0.05 },
 ];
-/// Compressions and reactions, N/m, between wide tools: the closed form of a rectangle that is free at its
-/// sides.
+/// Compressions and reactions, N/m, between wide tools: the closed form of a rectangle with free sides.
 const WIDE: [(f64, f64); 3] = [(0.1, 8.62e5), (0.2, 2.024e6), (0.25, 2.772e6)];
 const SOURCE: &str = "finite elements, reference.csv";
-/// Half the range of compression that lines are taken over.
+/// Half the range of compression of a fitted line.
 const WINDOW: f64 = 0.02;
 
 /// `across` is the number of particles over the height of the block.
@@ -65,8 +64,8 @@ fn punch(registry: &Registry, across: usize) -> Result<Vec<Check>> {
             Check::new(name("half width"), width, half_width, tolerance, "m", SOURCE).converging(),
         ]);
     }
-    // The surface of the block yields by a share of a spacing, which is too much at the resolution of the
-    // tests: see the page.
+    // The surface of the block is too soft by a fraction of a spacing, which is too much at the resolution of
+    // the tests: see the page.
     if across != CASE.ci_resolution {
         checks.extend(wide(registry, scene.clone())?);
     }
@@ -80,7 +79,7 @@ fn punch(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     Ok(checks)
 }
 
-/// Results of a run, each over the compression.
+/// Results of a run as functions of the compression.
 struct PunchRun {
     /// N per metre.
     reactions: Vec<(f64, f64)>,
@@ -104,7 +103,8 @@ fn press(simulation: &mut Simulation) -> Result<PunchRun> {
     Ok(PunchRun { reactions, widths, balance })
 }
 
-/// Between tools that are wider than the block, which stays a rectangle: no edge, and closed-form reactions.
+/// Between tools that are wider than the block, which stays a rectangle: no edge, and reactions in closed
+/// form.
 fn wide(registry: &Registry, scene: Template) -> Result<Vec<Check>> {
     let mut simulation = scene
         .set("bodies.upper.shape", "Box(min: (-4.0e-3, 1.5e-3), max: (4.0e-3, 2.1e-3))")?
@@ -121,8 +121,8 @@ fn wide(registry: &Registry, scene: Template) -> Result<Vec<Check>> {
     WIDE.into_iter().map(check).collect()
 }
 
-/// The value at a compression. The force falls in steps, whenever a particle slips over the edge of a tool: a
-/// line through some of them.
+/// The value at a compression, from a line fitted to nearby samples: the force falls in steps, whenever a
+/// particle slips over the edge of a tool.
 fn at(values: &[(f64, f64)], compression: f64) -> Result<f64> {
     let near = |done: &f64| (done - compression).abs() < WINDOW;
     let window: Vec<_> = values.iter().filter(|(done, _)| near(done)).collect();
@@ -139,7 +139,7 @@ fn at(values: &[(f64, f64)], compression: f64) -> Result<f64> {
 fn spoiled(registry: &Registry, scene: Template, block: BodyId) -> Result<f64> {
     let mut simulation: Simulation = scene.set("bodies.block.plugins", "[]")?.build(registry)?;
     let pairs = Disorder::new(&simulation, block)?;
-    // It may end early: particles invert.
+    // It may end early by inverted particles.
     let _ = run(&mut simulation, |_| Ok(()));
     pairs.measure(&simulation)
 }

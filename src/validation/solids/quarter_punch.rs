@@ -1,4 +1,4 @@
-//! S19: a quarter of a rubber block under a tool that is pressed in by 60 % of its height.
+//! S19: a quarter of a rubber block, compressed by a tool by 60 % of its height.
 
 use anyhow::Result;
 use meshless_engine::plugin::Registry;
@@ -18,8 +18,8 @@ pub(crate) const CASE: Case = Case {
     run: quarter_punch,
 };
 
-/// The coefficient of the paper for this punch, and twice the usual one of the control: what is under the
-/// edge of the tool is squeezed to a quarter of its volume.
+/// The coefficient of the paper for this punch, and twice the default of the control: the material under the
+/// edge of the tool is compressed to a quarter of its volume.
 const STABILIZERS: [(&str, &str); 2] =
     [("Hessian", "hessian_stabilization(eta: 1.4)"), ("hourglass", "hourglass_control(alpha: 10.0)")];
 
@@ -27,11 +27,11 @@ const STABILIZERS: [(&str, &str); 2] =
 struct PressedBlock {
     /// Whether the run has reached its end.
     completed: bool,
-    /// Root mean square of |F X - x| / |X| of neighbours of the start.
+    /// Root mean square of |F X - x| / |X| of initial neighbours.
     disorder: f64,
     /// Energy balance.
     balance: Balance,
-    /// Volume over that of the start.
+    /// Volume over its initial value.
     volume: f64,
 }
 

@@ -59,8 +59,8 @@ fn rubber_pull(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     Ok(checks)
 }
 
-/// Largest disorder on the way, without control. A particle that is inverted ends the run: that is
-/// disorder without bound.
+/// Maximum disorder during the run, without control. An inverted particle ends the run and counts as infinite
+/// disorder.
 fn disorder_without(registry: &Registry, across: usize) -> Result<f64> {
     let (mut simulation, disorder) = sheet(registry, across, 0.0)?;
     let mut largest = 0.0f64;
@@ -75,7 +75,7 @@ fn disorder_without(registry: &Registry, across: usize) -> Result<f64> {
     Ok(largest)
 }
 
-/// Whether an error says that a particle is inverted, or so nearly that no step is small enough.
+/// Whether an error reports an inverted particle, or one so nearly inverted that no step is small enough.
 fn is_torn(error: &str) -> bool {
     error.contains("det F <= 0")
         || error.contains("limited by wave speed of `sheet` at a stretch factor of 0.00")
@@ -91,7 +91,7 @@ fn reactions(simulation: &Simulation) -> Result<(f64, f64)> {
     Ok((sum(1.0), sum(-1.0)))
 }
 
-/// Force on the upper clamp at a small stretch, N/m: it shows where the clamps hold.
+/// Force on the upper clamp at a small stretch, N/m: it depends on the position of the edges of the clamps.
 fn first_force(registry: &Registry, across: usize) -> Result<f64> {
     let pull = |sign: &str| format!("(0.0, \"{sign}5e-5*smoothstep(t/0.3e-3)\")");
     let mut simulation = template(across, 5.0)?

@@ -1,4 +1,4 @@
-//! S17: rubber rings that hit a wall and each other.
+//! S17: impact of rubber rings on a wall and on each other.
 
 use anyhow::Result;
 use meshless_engine::glam::DVec3;
@@ -21,12 +21,12 @@ pub(crate) const CASE: Case = Case {
 
 const REFERENCE: &str = include_str!("../../../tests/validation/rubber_rings/reference.csv");
 const SOURCE: &str = "spectral elements, reference.csv";
-/// Velocity at the start, m/s.
+/// Initial velocity, m/s.
 const SPEED: f64 = 0.59;
 /// Velocity of the centre of mass after the rebound, over that before it.
 const REBOUND: f64 = 0.79382281;
 
-/// Formulations and stabilizers that are compared.
+/// Compared formulations and stabilizers.
 const RUNS: [(&str, &str, &str); 2] = [
     ("TL", "TotalLagrangian", "hourglass_control()"),
     ("UL", "UpdatedLagrangian(update: Every(3))", "hourglass_control()"),

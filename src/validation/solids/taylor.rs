@@ -1,4 +1,4 @@
-//! Taylor bars: measurements of the body that hits a wall.
+//! Taylor bars: measurements of the impacting body.
 
 use anyhow::{Context, Result, ensure};
 use meshless_engine::glam::DVec3;
@@ -11,9 +11,9 @@ use crate::measure::{Balance, run};
 pub struct BarShape {
     /// Extent along the axis, m.
     pub length: f64,
-    /// Largest distance of its surface from the axis, m.
+    /// Maximum distance of its surface from the axis, m.
     pub radius: f64,
-    /// Largest plastic strain of a particle.
+    /// Maximum plastic strain of a particle.
     pub plastic_strain: f64,
     /// Energy balance.
     pub balance: Balance,
@@ -25,7 +25,7 @@ pub fn impact(simulation: &mut Simulation, axis: DVec3) -> Result<BarShape> {
     measure(simulation, axis, balance)
 }
 
-/// The surface is half a spacing from the outermost particles, carried by their deformation gradients.
+/// The surface is half a spacing from the outermost particles and moves by their deformation gradients.
 fn measure(simulation: &Simulation, axis: DVec3, balance: Balance) -> Result<BarShape> {
     let (view, rows) = simulation.world().body_view(BodyId(0));
     let (position, reference) = (view.read::<Position>()?, view.read::<ReferencePosition>()?);
@@ -49,7 +49,7 @@ fn measure(simulation: &Simulation, axis: DVec3, balance: Balance) -> Result<Bar
     Ok(BarShape { length: high - low, radius, plastic_strain, balance })
 }
 
-/// Where the points are of two lines of the surface along the bar, which the scene has probes for: one in a
+/// Positions of two lines of points of the surface along the bar, which have probes in the scene: one in a
 /// plane of the lattice and the axis, one between two such planes.
 pub fn sides(simulation: &Simulation) -> Result<[Vec<DVec3>; 2]> {
     Ok([side(simulation, "along_axis")?, side(simulation, "between_axes")?])
@@ -66,7 +66,7 @@ pub fn distance_from_axis(point: &DVec3) -> f64 {
     point.truncate().length()
 }
 
-/// Mean of the largest distances of lines from the axis, m.
+/// Mean of the maximum distances of lines from the axis, m.
 pub fn largest_radius(sides: &[Vec<DVec3>]) -> f64 {
     let largest = |side: &Vec<DVec3>| side.iter().map(distance_from_axis).fold(0.0, f64::max);
     sides.iter().map(largest).sum::<f64>() / sides.len() as f64

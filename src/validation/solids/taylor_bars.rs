@@ -1,4 +1,4 @@
-//! S13, S14, S15: cylinders of copper, steel and aluminium that hit a wall.
+//! S13, S14, S15: impact of cylinders of copper, steel and aluminium on a wall.
 
 use anyhow::Result;
 use meshless_engine::glam::DVec3;
@@ -63,7 +63,7 @@ fn aluminium(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         .set("bodies.bar.spacing", 7.595e-3 / across as f64)?;
     let mut simulation = template.build(registry)?;
     let shape = impact(&mut simulation, DVec3::Z)?;
-    // Cells of particles reach beyond the surface at the sharp rim of the foot; the surface encloses the
+    // Cells of particles extend beyond the surface at the sharp rim of the foot; the surface encloses the
     // volume of the body.
     let shape = BarShape { radius: largest_radius(&sides(&simulation)?), ..shape };
     let of_radius = if across < 16 { 0.1 } else { 0.06 };

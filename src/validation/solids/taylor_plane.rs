@@ -1,4 +1,5 @@
-//! S6: Taylor bar in plane strain, with and without the switch of the hourglass control, and without control.
+//! S6: Taylor bar in plane strain, with and without the switch of the hourglass control, and without the
+//! control.
 
 use anyhow::Result;
 use meshless_engine::glam::DVec3;

@@ -1,4 +1,4 @@
-//! S24: a Taylor bar without hardening, which a fixed reference follows badly, as an updated-Lagrangian body.
+//! S24: a Taylor bar without hardening as an updated-Lagrangian body; a fixed reference is inaccurate here.
 
 use anyhow::Result;
 use meshless_engine::glam::DVec3;
@@ -44,7 +44,7 @@ fn taylor_soft(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     ])
 }
 
-/// The shape of a bar of that formulation at the end, and the mean of its volume over that of the start.
+/// The shape of a bar with this formulation at the end, and the mean of its volume over the initial one.
 fn bar(registry: &Registry, across: usize, formulation: &str) -> Result<(BarShape, f64)> {
     let text = include_str!("../../../tests/validation/taylor_soft/scene.ron");
     let mut simulation = Template::new("tests/validation/taylor_soft/scene.ron", text)

@@ -20,10 +20,10 @@ pub(crate) const CASE: Case = Case {
 
 const DIAMETER: f64 = 7.595e-3;
 const LENGTH: f64 = 37.975e-3;
-/// Length on the axis at the end and largest radius, m: extrapolated in reference.csv.
+/// Length on the axis at the end and maximum radius, m: extrapolated in reference.csv.
 const SHORTENED: f64 = 26.620e-3;
 const RADIUS: f64 = 5.623e-3;
-/// Radius at heights above the lowest point, as shares of the length at the start.
+/// Radius at heights above the lowest point, as fractions of the initial length.
 const PROFILE: [(&str, f64, f64); 3] = [
     ("radius 0.05 of the length above the foot", 0.05, 5.530e-3),
     ("radius 0.1 of the length above the foot", 0.1, 5.357e-3),

@@ -1,4 +1,4 @@
-//! S7: a bar with a slight waist is pulled until it breaks.
+//! S7: a bar with a slight waist is pulled to failure.
 
 use anyhow::{Result, ensure};
 use meshless_engine::plugin::Registry;
@@ -22,14 +22,14 @@ pub(crate) const CASE: Case = Case {
 const GAUGE: (f64, f64) = (0.02, 5.0);
 /// Limit of the principal logarithmic strain.
 const LIMIT: f64 = 0.08;
-/// How much narrower the middle is than the ends.
+/// Relative difference of the widths of the ends and the middle.
 const WAIST: f64 = 0.05;
 
-/// Results of a break.
+/// Results of a failure.
 struct Break {
     /// Elongation of the gauge when the first particle has failed, m.
     first: f64,
-    /// Elongation at the largest force, m.
+    /// Elongation at the maximum force, m.
     peak: f64,
     /// Distance from the middle of the first particle that has failed, and the mean of all when the force has
     /// halved, m.
@@ -70,7 +70,8 @@ fn tensile_failure(registry: &Registry, across: usize) -> Result<Vec<Check>> {
 }
 
 /// Elongation at which the middle of the gauge reaches the limit if every section is strained uniformly by
-/// the same force: the strain is as one over the area, whose width falls linearly to the middle.
+/// the same force: the strain is inversely proportional to the area, whose width falls linearly to the
+/// middle.
 fn elongation_of_uniform_sections() -> f64 {
     let pieces = 1000;
     let stretch = |k: usize| {
@@ -91,7 +92,7 @@ fn pull(registry: &Registry, across: usize, alpha: f64) -> Result<Break> {
     let mut seen = Break { first: 0.0, peak: 0.0, place: (0.0, 0.0), balance: Balance::default() };
     simulation.start()?;
     let mut largest = 0.0;
-    // Later the halves swing, and may break again elsewhere.
+    // Later the halves oscillate, and may fail again elsewhere.
     let failed = loop {
         simulation.step()?;
         seen.balance.see(&simulation);
@@ -118,8 +119,8 @@ fn mean_distance(places: &[f64]) -> f64 {
     places.iter().map(|x| x.abs()).sum::<f64>() / places.len() as f64
 }
 
-/// Force on the right grip, N, and where failed particles were in the reference configuration along the bar,
-/// m.
+/// Force on the right grip, N, and positions of failed particles in the reference configuration along the
+/// bar, m.
 fn look(simulation: &Simulation) -> Result<(f64, Vec<f64>)> {
     let (view, rows) = simulation.world().body_view(body(simulation, "bar")?);
     let reference = view.read::<ReferencePosition>()?;

@@ -1,4 +1,4 @@
-//! S9: the elastic flag of Turek and Hron under gravity, at rest (CSM1, CSM2) and swinging (CSM3).
+//! S9: the elastic flag of Turek and Hron under gravity, static (CSM1, CSM2) and oscillating (CSM3).
 
 use anyhow::Result;
 use meshless_engine::glam::DVec3;

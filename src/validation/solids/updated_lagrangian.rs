@@ -2,8 +2,8 @@
 //! exact, errors within 1.5 times the tolerances.
 //!
 //! Elastic bodies keep their first reference by default, and would be total-Lagrangian ones with another
-//! kernel: here they are updated every ten steps, as they need not be. (`Adaptive(change: 0.25)` makes no
-//! update in S11 either: lengths of pairs change by less.) Metals are updated as they are by default.
+//! kernel: here they are updated every ten steps, although they need not be. (`Adaptive(change: 0.25)` makes
+//! no update in S11 either: lengths of pairs change by less.) Metals are updated as by default.
 
 use anyhow::Result;
 use meshless_engine::formulations::updated_lagrangian::{Update, UpdatedLagrangian};
@@ -46,10 +46,10 @@ cases! { UpdatedLagrangian::NAME;
     ALUMINIUM "S15U" "Taylor bar of aluminium 6061-T6" taylor_bars::ALUMINIUM, 1.5;
 }
 
-/// When elastic bodies are updated.
+/// Updates of the reference of elastic bodies.
 const UPDATE: Update = Update::Every(10);
 
-/// `UpdatedLagrangian` with updates every so many steps.
+/// `UpdatedLagrangian` with an update every so many steps.
 #[derive(Deserialize, JsonSchema)]
 #[serde(crate = "self::serde", transparent)]
 #[schemars(crate = "self::schemars", transparent)]
@@ -77,7 +77,7 @@ impl Formulation for Updated {
     }
 }
 
-/// How the names of checks of the energy balance end.
+/// Suffix of the names of checks of the energy balance.
 const ENERGY_BALANCE: &str = "energy balance error";
 
 /// Runs a case at a resolution with the other formulation and tolerances wider by a factor.
@@ -96,8 +96,8 @@ fn run(
     Ok(general.map(|check| widened(check, factor)).collect())
 }
 
-/// The check with a wider tolerance. That of the energy is a bound, which others keep: here every update
-/// books what it changes between two steps.
+/// The check with a wider tolerance. The tolerance of the energy balance is not widened: every update books
+/// the change that it makes between two steps.
 fn widened(check: Check, factor: f64) -> Check {
     let factor_of_bound = if check.name.ends_with(ENERGY_BALANCE) { factor } else { 1.0 };
     let check = check.widened(factor);

@@ -71,8 +71,8 @@ fn upsetting(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     ])
 }
 
-/// Distance of the end faces of the billet: half a spacing outside of its outermost particles, carried by
-/// their gradients, m.
+/// Distance of the end faces of the billet, m: half a spacing outside of its outermost particles, moved by
+/// their deformation gradients.
 fn height_of(simulation: &Simulation, billet: BodyId) -> Result<f64> {
     let (view, rows) = simulation.world().body_view(billet);
     let (position, reference) = (view.read::<Position>()?, view.read::<ReferencePosition>()?);

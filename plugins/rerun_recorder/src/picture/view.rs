@@ -2,7 +2,7 @@
 
 use meshless_engine::scene::Dimension;
 
-use crate::camera::{Eye, OPENING, across, dot, unit};
+use crate::camera::{OPENING, Viewpoint, across, dot, unit};
 use crate::reading::RecordedFrame;
 
 /// A ball in the picture.
@@ -18,7 +18,7 @@ pub struct Ball {
 
 /// A camera with all particles of all frames in view.
 pub struct View {
-    eye: Eye,
+    eye: Viewpoint,
     back: [f64; 3],
     right: [f64; 3],
     top: [f64; 3],
@@ -33,7 +33,7 @@ impl View {
     pub fn new(frame: &RecordedFrame, width: usize, height: usize) -> Self {
         let plane = frame.bodies.iter().flat_map(|body| &body.positions).all(|place| place[2] == 0.0);
         let dimension = if plane { Dimension::Two } else { Dimension::Three };
-        let eye = Eye::on(&frame.bounds, dimension, frame.up, width as f64 / height as f64);
+        let eye = Viewpoint::on(&frame.bounds, dimension, frame.up, width as f64 / height as f64);
         let back = unit(std::array::from_fn(|k| eye.position[k] - eye.target[k]));
         let [right, top] = across(eye.up, back);
         let middle = [0.5 * width as f64, 0.5 * height as f64];

@@ -17,7 +17,7 @@ use super::blueprint::{Blueprint, Tile, ViewKind, only, with_children, without};
 use super::legend;
 use super::paths;
 use super::series::{Plot, SeriesTable};
-use crate::camera::{Bounds, Eye};
+use crate::camera::{Bounds, Viewpoint};
 
 /// Input of the layout.
 pub struct Layout {
@@ -105,7 +105,7 @@ impl Layout {
         bounds: &Bounds,
         background: &Background,
     ) -> RecordingStreamResult<Tile> {
-        let eye = Eye::on(bounds, self.dimension, self.up, ASPECT);
+        let eye = Viewpoint::on(bounds, self.dimension, self.up, ASPECT);
         let single = |v: [f64; 3]| v.map(|x| x as f32);
         let camera = EyeControls3D::new()
             .with_position(Position3D::from(single(eye.position)))

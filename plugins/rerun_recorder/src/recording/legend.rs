@@ -79,7 +79,7 @@ pub struct PlacedExtreme {
 }
 
 impl Legend {
-    /// Shows the least and the greatest value of a frame.
+    /// Shows the minimum and the maximum value of a frame.
     pub fn show_extremes(
         &self,
         output: &RecordingOutput,

@@ -184,7 +184,7 @@ fn values<'a>(body: &BodyFrame<'a>, name: &str) -> &'a [f64] {
     body.fields.iter().find(|field| field.name == name).map_or(&[], |field| field.values)
 }
 
-/// The least and the greatest value of the coloured bodies, with their places.
+/// The minimum and the maximum value of the coloured bodies, with their places.
 fn extremes(
     frame: &Frame<'_>,
     color_by: &str,

@@ -45,14 +45,14 @@ pub struct SeriesTable {
 /// Share of the largest account of a plot, below which an account is drawn in the plot of all accounts only.
 const MINOR: f64 = 0.01;
 /// Curves in one plot of probes, at most: the entries of a legend that is longer cannot be reached.
-const MOST_CURVES: usize = 8;
+const MAX_CURVES: usize = 8;
 
 /// Values that have been sent over those that are sent next, at most: a recording that is cut short may lack
 /// the last of so many parts of its curves.
 const PIECES: usize = 100;
 
 /// Values of a series that are held back at most.
-const MOST_PENDING: usize = 1000;
+const MAX_PENDING: usize = 1000;
 
 /// Colours that differ for all kinds of colour vision, on dark and on light (M. Okabe, K. Ito, 2008; the last
 /// three: P. Tol, 2021).
@@ -117,7 +117,7 @@ impl SeriesTable {
                 self.idle.insert(sample.name.to_owned());
             }
         }
-        if most < MOST_PENDING { Ok(()) } else { self.send(output) }
+        if most < MAX_PENDING { Ok(()) } else { self.send(output) }
     }
 
     /// Sends what has been taken if that is a good part of all: each piece leaves an entry in the index of
@@ -291,7 +291,7 @@ impl SeriesTable {
 
 /// A plot in as many parts as it takes to keep their legends short.
 fn parts(plot: Plot) -> Vec<Plot> {
-    let count = plot.include.len().div_ceil(MOST_CURVES);
+    let count = plot.include.len().div_ceil(MAX_CURVES);
     if count <= 1 {
         return vec![plot];
     }
@@ -301,7 +301,7 @@ fn parts(plot: Plot) -> Vec<Plot> {
         exclude: Vec::new(),
         has_legend: true,
     };
-    plot.include.chunks(MOST_CURVES).enumerate().map(part).collect()
+    plot.include.chunks(MAX_CURVES).enumerate().map(part).collect()
 }
 
 /// Plots by the series drawn together.

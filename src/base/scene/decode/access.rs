@@ -15,7 +15,7 @@ fn value<'a>(node: &'a Node, context: &'a Context<'a>) -> NodeValue<'a> {
 /// The entries of a list or tuple.
 pub(super) struct Entries<'a, 'i> {
     pub rest: &'i mut std::slice::Iter<'a, Node>,
-    /// Whether a bad entry is reported and left out, as a list can do.
+    /// Whether a bad entry is reported and skipped, as in a list.
     pub recover: bool,
     pub context: &'a Context<'a>,
 }
@@ -66,7 +66,7 @@ impl<'a> MapAccess<'a> for StructValues<'a, '_> {
         };
         let known = self.context.bad_fields.borrow().len();
         seed.deserialize(value(&field.value, self.context)).map_err(|error| {
-            // Where only a field within this one is bad, the next pass leaves out just that.
+            // If only a field within this one is bad, the next pass skips just that field.
             if self.context.bad_fields.borrow().len() == known {
                 self.context.bad_fields.borrow_mut().insert(field.name.span.start);
             }
@@ -83,7 +83,7 @@ pub(super) struct MapEntries<'a> {
 }
 
 impl<'a> MapEntries<'a> {
-    /// The entries, after reporting the keys that are given twice.
+    /// The entries; keys that are given twice are reported.
     pub fn new(entries: &'a [(Node, Node)], context: &'a Context<'a>) -> Self {
         let text = |node: &'a Node| match &node.kind {
             NodeKind::Text { value, .. } => Some(value.as_str()),

@@ -13,9 +13,9 @@ pub(super) struct Context<'a> {
     pub offset: usize,
     pub symbols: &'a Symbols,
     pub problems: RefCell<Vec<Problem>>,
-    /// Where the names of fields are whose values are known to be bad.
+    /// Positions of the names of fields whose values are known to be bad.
     pub bad_fields: RefCell<BTreeSet<usize>>,
-    /// Whether something other than an unknown or repeated field was left out.
+    /// Whether anything but an unknown or repeated field was skipped.
     pub incomplete: Cell<bool>,
 }
 

@@ -14,12 +14,12 @@ use crate::scene::tree::{Node, NodeKind, StructField};
 struct WrittenFields<'a> {
     /// Those that the type has, each once.
     good: Vec<&'a StructField>,
-    /// Names that are missing because they are misspelt or their values bad.
+    /// Fields that are missing because their names are misspelt or their values bad.
     meant: Vec<&'a str>,
 }
 
 impl<'a> NodeValue<'a> {
-    /// Reads fields, after reporting those that the type does not have and those that are given twice.
+    /// Reads fields; those that the type does not have and those that are given twice are reported.
     pub fn read_fields<V: Visitor<'a>>(
         self,
         label: &str,
@@ -28,13 +28,13 @@ impl<'a> NodeValue<'a> {
     ) -> Outcome<V::Value> {
         let WrittenFields { good, meant } = self.fields(label, known);
         match visitor.visit_map(StructValues { fields: good.iter(), next: None, context: self.context }) {
-            // What is missing because its name is misspelt or its value bad has been reported as that.
+            // If the name is misspelt or the value bad, that has been reported.
             Err(Error::Missing(field)) if meant.contains(&field) => Err(Error::Reported),
             result => self.here(result),
         }
     }
 
-    /// The fields that the type has, each once, after reporting the others.
+    /// The fields that the type has, each once; the others are reported.
     fn fields(self, label: &str, known: &'static [&'static str]) -> WrittenFields<'a> {
         let (mut good, mut meant) = (Vec::<&StructField>::new(), Vec::new());
         for field in self.node.fields() {
@@ -72,7 +72,7 @@ impl<'a> NodeValue<'a> {
     }
 }
 
-/// The error of entries that were not read.
+/// The error for entries beyond the length of a tuple.
 fn too_many(found: usize, unread: usize) -> Error {
     let expected = match found - unread {
         1 => "1 entry".into(),
@@ -138,7 +138,7 @@ impl<'a> Deserializer<'a> for NodeValue<'a> {
 
     fn deserialize_i64<V: Visitor<'a>>(self, visitor: V) -> Outcome<V::Value> {
         match self.expression()? {
-            // Beyond these numbers not every whole number is one of floating point.
+            // Larger integers are not all exact in floating point.
             Some(value) if value.fract() == 0.0 && value.abs() < 9e15 && value < 0.0 => {
                 self.here(visitor.visit_i64(value as i64))
             }
@@ -300,7 +300,7 @@ impl<'a> Deserializer<'a> for NodeValue<'a> {
     }
 }
 
-/// The expected alternatives where a variant stands.
+/// The expected variants, for a message.
 fn one_of(name: &str, variants: &[&str]) -> String {
     let known: Vec<_> = variants.iter().map(|variant| format!("`{variant}`")).collect();
     format!("one of {} for this {name}", known.join(", "))

@@ -10,12 +10,12 @@ use crate::scene::text_fault::TextFault;
 use crate::scene::tree::{Node, NodeKind};
 use crate::scene::{ExpressionError, Problem};
 
-/// An error on its way to the value that it is about.
+/// An error that has no position yet: it gets that of the value that reports it.
 #[derive(Debug)]
 pub(super) enum Error {
     /// Already reported.
     Reported,
-    /// Something else was expected than the value.
+    /// The value is not of the type that the text describes.
     Expected(String),
     /// A tuple of the wrong length.
     Length { found: usize, expected: String },
@@ -23,12 +23,12 @@ pub(super) enum Error {
     Variant { found: String, known: &'static [&'static str] },
     /// A field that must be given is not.
     Missing(&'static str),
-    /// Anything else, as the type says it.
+    /// Any other error, in the words of the type.
     Message(String),
 }
 
 impl Error {
-    /// The error with the number of entries that a tuple has, where it is one of its length.
+    /// The error; if it is about the length of a tuple, with the number of entries found.
     pub fn with_found(self, found: usize) -> Self {
         match self {
             Self::Length { expected, .. } => Self::Length { found, expected },
@@ -65,8 +65,8 @@ impl Error {
     }
 }
 
-/// Help where the value is right but for its notation: entries in the round brackets of a name whose value is
-/// a list, a single entry without brackets, a name in quotes.
+/// Help if only the notation of the value is wrong: entries in the round brackets of a name whose value is a
+/// list, a single entry without brackets, a name in quotes.
 fn notation_help(node: &Node, expected: &str) -> Vec<String> {
     let help = match (&node.kind, &node.name) {
         (NodeKind::Tuple(entries), Some(name)) if entries.len() > 1 && expected == A_LIST => {
@@ -83,7 +83,7 @@ fn notation_help(node: &Node, expected: &str) -> Vec<String> {
     vec![help]
 }
 
-/// All of a value for a message about what it is; of a long one the head only.
+/// The span of a value in a message: the whole value, or only its head if it is long.
 fn whole_or_head(node: &Node) -> std::ops::Range<usize> {
     match node.kind {
         NodeKind::Tuple(_) | NodeKind::Fields(_) => node.span.clone(),
@@ -91,12 +91,12 @@ fn whole_or_head(node: &Node) -> std::ops::Range<usize> {
     }
 }
 
-/// A fault of an expression, at its place within the text value `node`.
+/// The problem of an expression, at its position within the text value `node`.
 pub(in crate::scene) fn expression_problem(node: &Node, error: &ExpressionError) -> Problem {
     located(node, &error.as_text_fault())
 }
 
-/// The problem of a message, at its place within a text where it has one.
+/// The problem of a message, at its position within a text if the message carries one.
 fn located(node: &Node, message: &str) -> Problem {
     let Some(TextFault { bytes, message, help }) = TextFault::read(message) else {
         return Problem::at_span(whole_or_head(node), message);
@@ -111,7 +111,7 @@ fn located(node: &Node, message: &str) -> Problem {
 
 const A_LIST: &str = "a list `[...]`";
 
-/// The type in the words of a scene, from that of serde.
+/// The expected type of serde, in the terms of a scene.
 fn in_words(expected: &dyn Expected) -> String {
     let expected = expected.to_string();
     match expected.as_str() {

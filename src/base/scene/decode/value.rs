@@ -12,12 +12,12 @@ use crate::scene::tree::{Node, NodeKind};
 /// The name of the newtype by which an `Item` asks for its text and place instead of its value.
 pub(in crate::scene) const ITEM: &str = "$meshless::Item";
 
-/// A value on its way into a type.
+/// A value of the tree that is read into a type.
 #[derive(Clone, Copy)]
 pub(super) struct NodeValue<'a> {
     pub node: &'a Node,
     pub context: &'a Context<'a>,
-    /// Whether the name before the brackets was used already, as that of a variant.
+    /// Whether the name before the brackets was already used as that of a variant.
     pub unnamed: bool,
 }
 
@@ -52,7 +52,7 @@ impl<'a> NodeValue<'a> {
         }
     }
 
-    /// The value of an expression that stands where a number is expected; none if the value is no text.
+    /// The value of an expression in the place of a number; none if the value is not text.
     pub fn expression(self) -> Outcome<Option<f64>> {
         let symbols = self.context.symbols;
         match &self.node.kind {

@@ -1,4 +1,4 @@
-//! Text of an expression -> program for a stack machine, constants folded.
+//! Compiles the text of an expression to a program for a stack machine; constants are folded.
 
 use std::sync::Arc;
 
@@ -9,12 +9,12 @@ use crate::scene::slips::is_unit;
 use crate::scene::symbols::Symbols;
 use crate::scene::table::Interpolation;
 
-/// Values that an evaluation can hold at once.
+/// Size of the stack of an evaluation.
 pub(super) const MAX_STACK: usize = 32;
-/// Brackets, signs and powers nest no deeper than this.
+/// Maximum nesting depth of brackets, signs and powers.
 const MAX_DEPTH: usize = 64;
 
-/// One step of the program.
+/// One instruction of the program.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Op {
     Constant(f64),
@@ -33,7 +33,7 @@ pub(super) struct Program {
 }
 
 impl Program {
-    /// The program with this value.
+    /// The program that returns a constant.
     pub fn constant(value: f64) -> Self {
         Self { ops: vec![Op::Constant(value)], tables: Vec::new() }
     }
@@ -42,15 +42,15 @@ impl Program {
 /// Compiles an expression that may use the names of `symbols`.
 ///
 /// # Errors
-/// The text is no expression, or its value is constant and not finite.
+/// The text is not an expression, or its value is constant and not finite.
 pub(super) fn compile(text: &str, symbols: &Symbols) -> Result<Program, ExpressionError> {
     run(text, symbols, &VARIABLES)
 }
 
-/// The value of an expression that stands for a number: it cannot depend on place and time.
+/// The value of an expression in the place of a number: it cannot depend on position and time.
 ///
 /// # Errors
-/// The text is no such expression, or its value is not finite.
+/// The text is not such an expression, or its value is not finite.
 pub(in crate::scene) fn constant(text: &str, symbols: &Symbols) -> Result<f64, ExpressionError> {
     let Program { ops, .. } = run(text, symbols, &[])?;
     match ops.as_slice() {
@@ -64,7 +64,7 @@ pub(in crate::scene) fn constant(text: &str, symbols: &Symbols) -> Result<f64, E
     }
 }
 
-/// The names in a text; digits that follow a number, as in `2e3`, are none.
+/// The names in a text; the exponent of a number, as in `2e3`, is not a name.
 pub(in crate::scene) fn words(text: &str) -> impl Iterator<Item = &str> {
     let words = text.split(|c: char| !(c.is_alphanumeric() || c == '_' || c == '.'));
     words.filter(|word| word.starts_with(|c: char| c.is_alphabetic() || c == '_'))

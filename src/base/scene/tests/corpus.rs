@@ -1,6 +1,6 @@
-//! The bad scenes of `tests/scenes/bad`. A file says in its first lines what its error must contain, `//
-//! expect: text`, and at which places, `// at: line:column`. With `// level: build` it is a scene that only
-//! building it finds bad.
+//! The bad scenes of `tests/scenes/bad`. The first lines of a file state the expected text of its error, `//
+//! expect: text`, and its positions, `// at: line:column`. `// level: build` marks a scene whose error is
+//! found only when it is built.
 
 use super::super::load;
 use super::folder;

@@ -1,4 +1,4 @@
-//! Items: what a registry resolves later.
+//! Items, which a registry resolves later.
 
 use serde::Deserialize;
 

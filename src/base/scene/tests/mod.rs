@@ -1,4 +1,4 @@
-//! Tests of the scene language. The good and bad scenes are files, shared with the tests of what is built
+//! Tests of the scene language. The good and bad scenes are files, shared with the tests of simulations built
 //! from them.
 
 mod corpus;
@@ -13,7 +13,7 @@ use std::path::PathBuf;
 
 use super::Source;
 
-/// Cases of a property test: `PROPTEST_CASES` where it is set, for a long hunt.
+/// Number of cases of a property test: `PROPTEST_CASES` if it is set, for a long search.
 fn cases(few: u32) -> u32 {
     std::env::var("PROPTEST_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(few)
 }

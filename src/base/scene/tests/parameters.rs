@@ -36,7 +36,7 @@ fn expressions_stand_wherever_a_number_does() {
     assert_eq!(scene.parameter_values()["h"], 0.05);
 }
 
-/// What a plugin of a third party looks like.
+/// A plugin of a third party.
 #[derive(Debug, PartialEq, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Control {
@@ -58,7 +58,7 @@ fn plugins_use_the_names_too() {
     let nested: Control = control.nested.unwrap().parse().unwrap();
     assert_eq!((nested.alpha, nested.count), (0.5, 3));
     assert!(nested.value.0[0].as_ref().unwrap().is_constant());
-    // A scene that a program writes and reads again says the same.
+    // A scene that is written and read again is the same.
     let again = read(scene.to_source("again.ron").unwrap());
     assert_eq!(again.plugins[0].parse::<Control>().unwrap().alpha, 1.5);
 }

@@ -1,4 +1,4 @@
-//! Texts that are good scenes, and what they mean.
+//! Valid scene texts and their meaning.
 
 use glam::DVec3;
 
@@ -91,7 +91,7 @@ fn texts_numbers_and_comments() {
 
 #[test]
 fn as_ron_reads_it() {
-    // The library that everyone else reads RON with agrees on the scenes.
+    // The `ron` crate reads the scenes alike.
     let scene = read(everything());
     let text = scene.to_source("again.ron").unwrap().text;
     let value: ron::Value = ron::from_str(&text).unwrap();
@@ -137,7 +137,7 @@ fn problems_are_found_by_path() {
     assert_eq!(text_at("conditions[1].value[1]"), "\"-0.1*min(t/0.01, 1)\"");
     assert_eq!(text_at("probes.reaction.on.body"), "\"tool\"");
     assert_eq!(text_at("time.step.factor"), "0.9");
-    // What is not written is shown at what is around it.
+    // A value that is not written is shown at its parent.
     assert_eq!(text_at("bodies.tool.velocity"), "Body");
     assert_eq!(text_at("nowhere"), "Scene");
 }

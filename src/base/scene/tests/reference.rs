@@ -1,4 +1,4 @@
-//! The documentation that is made from the types.
+//! The documentation that is generated from the types.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -17,7 +17,7 @@ use crate::shapes::mesh_fault::MeshFault;
 pub(in crate::shapes) fn load(folder: &Path, file: &str, scale: f64) -> Result<MeshSolid, FillErrorKind> {
     let full = folder.join(file);
     let shown = full.display().to_string();
-    let bytes = match files::read(&full, files::LARGEST_GEOMETRY) {
+    let bytes = match files::read(&full, files::MAX_GEOMETRY) {
         Ok(bytes) => bytes,
         Err(source) => return Err(FillErrorKind::File { file: shown, source }),
     };

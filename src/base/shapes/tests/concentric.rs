@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::{assert_close, filled, least_distance, total, try_fill};
+use super::{assert_close, filled, min_distance, total, try_fill};
 use crate::scene::Dimension::{Three, Two};
 use crate::shapes::{FillErrorKind, Lattice, Site};
 
@@ -20,7 +20,7 @@ fn rings_of_a_disc() {
         assert_close(total(&sites), PI * radius * radius, 1e-12);
         let center = moment(&sites) / total(&sites);
         assert!(center.distance(DVec3::new(2.0, 1.0, 0.0)) < 1e-12);
-        assert!(least_distance(&sites) > 0.07, "{radius}");
+        assert!(min_distance(&sites) > 0.07, "{radius}");
         for site in &sites {
             assert!(site.position.distance(center) < radius);
             assert_close(site.volume, 0.01, 0.25);
@@ -46,7 +46,7 @@ fn ring_and_tube_have_their_second_moment() {
         filled("Tube(from: (0, 0, 0), to: (2, 2, 1), inner: 0.5, outer: 1)", Lattice::Concentric, 0.1, Three);
     assert_close(total(&tube), 2.25 * PI, 1e-12);
     assert!((moment(&tube) / total(&tube)).distance(DVec3::new(1.0, 1.0, 0.5)) < 1e-12);
-    assert!(least_distance(&tube) > 0.07);
+    assert!(min_distance(&tube) > 0.07);
     let axis = DVec3::new(2.0, 2.0, 1.0) / 3.0;
     for site in &tube {
         let along = site.position.dot(axis);
@@ -69,7 +69,7 @@ fn shells_of_a_ball() {
     let volume = 4.0 / 3.0 * PI * 0.6f64.powi(3);
     assert_close(total(&sites), volume, 1e-12);
     assert!((moment(&sites) / total(&sites)).distance(DVec3::X) < 5e-3);
-    assert!(least_distance(&sites) > 0.06);
+    assert!(min_distance(&sites) > 0.06);
     for site in &sites {
         assert!(site.position.distance(DVec3::X) < 0.6);
         assert_close(site.volume, 1e-3, 0.1);
@@ -96,7 +96,7 @@ fn shells_of_a_hollow_sphere() {
     let sites = filled(text, Lattice::Concentric, 0.075, Three);
     assert_close(total(&sites), 4.0 / 3.0 * PI * (0.6f64.powi(3) - 0.3f64.powi(3)), 1e-12);
     assert!((moment(&sites) / total(&sites)).distance(DVec3::X) < 5e-3);
-    assert!(least_distance(&sites) > 0.045);
+    assert!(min_distance(&sites) > 0.045);
     for site in &sites {
         assert!((0.3..0.6).contains(&site.position.distance(DVec3::X)));
         assert_close(site.volume, 0.075f64.powi(3), 0.1);

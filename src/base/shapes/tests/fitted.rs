@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{assert_close, filled, least_distance, shape, total};
+use super::{assert_close, filled, min_distance, shape, total};
 use crate::scene::Dimension::{Three, Two};
 use crate::shapes::Lattice;
 
@@ -33,9 +33,9 @@ fn the_outermost_layer_is_half_a_spacing_from_any_boundary() {
         let mean = total(&sites) / sites.len() as f64;
         let volumes = || sites.iter().map(|site| site.volume / mean);
         let (least, most) = (volumes().fold(f64::INFINITY, f64::min), volumes().fold(0.0, f64::max));
-        println!("{text}: {} {least:.3} {most:.3} {:.3}", sites.len(), least_distance(&sites) / spacing);
+        println!("{text}: {} {least:.3} {most:.3} {:.3}", sites.len(), min_distance(&sites) / spacing);
         assert!(least > 0.5 && most < 1.6, "{text}: {least} {most}");
-        assert!(least_distance(&sites) > 0.6 * spacing, "{text}: {}", least_distance(&sites) / spacing);
+        assert!(min_distance(&sites) > 0.6 * spacing, "{text}: {}", min_distance(&sites) / spacing);
     }
 }
 

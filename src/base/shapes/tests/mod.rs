@@ -47,7 +47,7 @@ fn assert_close(value: f64, expected: f64, relative: f64) {
     assert!((value - expected).abs() <= relative * expected.abs(), "{value} is not {expected}");
 }
 
-fn least_distance(sites: &[Site]) -> f64 {
+fn min_distance(sites: &[Site]) -> f64 {
     let mut least = f64::INFINITY;
     for (n, a) in sites.iter().enumerate() {
         for b in &sites[..n] {

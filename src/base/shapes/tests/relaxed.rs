@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::{assert_close, filled, least_distance, total};
+use super::{assert_close, filled, min_distance, total};
 use crate::scene::Dimension::{self, Three, Two};
 use crate::shapes::{Lattice, Site};
 
@@ -35,9 +35,9 @@ fn particles_keep_apart_and_volumes_even() {
             println!(
                 "{text} {iterations} {}: {:.3} {least:.3} {most:.3}",
                 sites.len(),
-                least_distance(&sites) / spacing
+                min_distance(&sites) / spacing
             );
-            assert!(least_distance(&sites) > 0.5 * spacing, "{text} {iterations}");
+            assert!(min_distance(&sites) > 0.5 * spacing, "{text} {iterations}");
             assert!(least > limits.0 && most < limits.1, "{text} {iterations}: {least} {most}");
         }
     }

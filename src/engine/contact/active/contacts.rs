@@ -62,17 +62,17 @@ impl<T: Copy + Default + Send + Sync, P: Copy + Default + Send + Sync, E: BlockS
     /// Reserves slots for that many candidates. Unused ones are not touched: they take addresses, and no
     /// memory.
     pub fn reserve(&mut self, count: usize) {
-        fn room<V>(list: &mut Vec<V>, count: usize) {
+        fn reserve_total<V>(list: &mut Vec<V>, count: usize) {
             list.reserve(count.saturating_sub(list.len()));
         }
         let blocks = block_count(count);
-        room(&mut self.slots, count);
-        room(&mut self.met, count);
-        room(&mut self.pushes, count);
-        room(&mut self.numbers.within, count);
-        room(&mut self.numbers.first, blocks);
-        room(&mut self.found, blocks);
-        room(&mut self.energies, count);
+        reserve_total(&mut self.slots, count);
+        reserve_total(&mut self.met, count);
+        reserve_total(&mut self.pushes, count);
+        reserve_total(&mut self.numbers.within, count);
+        reserve_total(&mut self.numbers.first, blocks);
+        reserve_total(&mut self.found, blocks);
+        reserve_total(&mut self.energies, count);
         self.histories.reserve(count);
     }
 

@@ -29,7 +29,7 @@ pub(in crate::contact) struct Filter<T, E> {
 }
 
 impl<T: Copy + Default + Send + Sync, E: BlockSum + Sync> Filter<T, E> {
-    /// With room for tests of that many.
+    /// With capacity for tests of that many.
     pub fn new(count: usize) -> Self {
         Self { slots: Vec::with_capacity(count), found: Vec::with_capacity(block_count(count)) }
     }

@@ -1,7 +1,7 @@
 //! The active contacts among the candidates of a step, with their histories and forces, and the sums of the
 //! forces on particles.
 
-mod least;
+mod minimum_length;
 
 mod filter;
 
@@ -11,5 +11,5 @@ mod nodes;
 
 pub(super) use contacts::ActiveContacts;
 pub(super) use filter::Filter;
-pub(super) use least::Least;
+pub(super) use minimum_length::MinimumLength;
 pub(super) use nodes::{ContactEnd, ContactNodes, NodeLoad};

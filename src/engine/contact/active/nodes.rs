@@ -7,7 +7,7 @@ use super::contacts::Numbers;
 use super::filter::BLOCKS_OF_TEST;
 use crate::contact::bodies::Members;
 use crate::contact::response::PairKey;
-use crate::parallel::{Largest, Picked, for_each_block, for_each_block_in_tasks, sum_over_blocks};
+use crate::parallel::{Maximum, Picked, for_each_block, for_each_block_in_tasks, sum_over_blocks};
 use crate::solids::{LocalMotion, SolidPhase};
 use crate::world::{Force, Mass, Temperature};
 
@@ -74,20 +74,20 @@ impl ContactNodes {
         }
     }
 
-    /// Makes room for that many candidates.
+    /// Allocates memory for that many candidates.
     pub fn reserve(&mut self, candidates: usize) {
-        fn make_room<V>(list: &mut Vec<V>, count: usize) {
+        fn reserve_total<V>(list: &mut Vec<V>, count: usize) {
             list.reserve(count.saturating_sub(list.len()));
         }
-        make_room(&mut self.ends, 2 * candidates);
+        reserve_total(&mut self.ends, 2 * candidates);
         let count = (2 * candidates).min(self.numbers.len());
-        make_room(&mut self.nodes, count);
-        make_room(&mut self.starts, count + 1);
-        make_room(&mut self.local_motions, count);
-        make_room(&mut self.forces, count);
-        make_room(&mut self.couples, count);
-        make_room(&mut self.stiffness, count);
-        make_room(&mut self.heat, count);
+        reserve_total(&mut self.nodes, count);
+        reserve_total(&mut self.starts, count + 1);
+        reserve_total(&mut self.local_motions, count);
+        reserve_total(&mut self.forces, count);
+        reserve_total(&mut self.couples, count);
+        reserve_total(&mut self.stiffness, count);
+        reserve_total(&mut self.heat, count);
     }
 
     /// Takes in the particles of a new list of candidates, which stand at these ends.
@@ -194,7 +194,7 @@ impl ContactNodes {
 
     /// The largest stiffness over mass of the contacts of a particle, 1/s2.
     pub fn stiffest(&self) -> f64 {
-        sum_over_blocks(&self.stiffness[..], &|_, stiffness: &[f64]| Largest::of(stiffness.iter().copied())).0
+        sum_over_blocks(&self.stiffness[..], &|_, stiffness: &[f64]| Maximum::of(stiffness.iter().copied())).0
     }
 
     /// Adds what acts on the neighbourhoods; `first` is the first row of the body.

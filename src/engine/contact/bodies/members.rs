@@ -7,7 +7,7 @@ use hecs::ArchetypeColumn;
 
 use super::shape::ParticleShape;
 use crate::plugin::{BodyPlan, Offer};
-use crate::removal::Leaving;
+use crate::removal::LeavingParticles;
 use crate::scene::Dimension;
 use crate::schedule::Resources;
 use crate::solids::{LocalMotion, SolidPhase};
@@ -43,13 +43,13 @@ impl MemberParticles {
         Self { body: body.id, radius, deform, on_a_side }
     }
 
-    /// The largest radius, m.
-    pub fn largest(&self) -> f64 {
+    /// The maximum radius, m.
+    pub fn max_radius(&self) -> f64 {
         self.radius.iter().copied().fold(0.0, f64::max)
     }
 
-    /// The least radius, m.
-    pub fn least(&self) -> f64 {
+    /// The minimum radius, m.
+    pub fn min_radius(&self) -> f64 {
         self.radius.iter().copied().fold(f64::INFINITY, f64::min)
     }
 }
@@ -77,7 +77,7 @@ pub(in crate::contact) struct MemberColumns<'a> {
     gradient: Option<ArchetypeColumn<'a, DeformationGradient>>,
     solid: Option<Ref<'a, dyn SolidPhase>>,
     body: Option<Ref<'a, dyn SolidPhase>>,
-    leaving: Option<Ref<'a, Leaving>>,
+    leaving: Option<Ref<'a, LeavingParticles>>,
 }
 
 impl<'a> MemberColumns<'a> {
@@ -132,7 +132,7 @@ pub(in crate::contact) struct Members<'a> {
     /// The body, where its particles deform with it.
     solid: Option<&'a dyn SolidPhase>,
     body: Option<&'a dyn SolidPhase>,
-    leaving: Option<&'a Leaving>,
+    leaving: Option<&'a LeavingParticles>,
 }
 
 impl Members<'_> {

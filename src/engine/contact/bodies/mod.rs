@@ -18,5 +18,5 @@ pub(super) use error::failed;
 pub(super) use members::{BUMPS, MemberColumns, MemberParticles, Members};
 pub(super) use motion::MotionBounds;
 pub(super) use node_view::{NodeMotion, NodeTurn, NodeView};
-pub(super) use shape::{Nearness, ParticleShape, of_pair};
+pub(super) use shape::{ParticleShape, Proximity, of_pair};
 pub(super) use sides::{ContactSides, SideNodes};

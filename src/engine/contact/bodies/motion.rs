@@ -8,7 +8,7 @@
 use glam::DVec3;
 
 use super::shape::squared_stretch;
-use crate::parallel::{BlockSum, Largest, sum_over_blocks};
+use crate::parallel::{BlockSum, Maximum, sum_over_blocks};
 use crate::rigid::RigidBodies;
 use crate::schedule::{Step, StepError};
 use crate::symmetry::Map;
@@ -50,7 +50,7 @@ impl MotionBounds {
             && let Some(rigid) = bodies.iter().find(|rigid| rigid.id == body)
         {
             // The points that touch are farther out than the particles.
-            let spread = rigid.state.angular_velocity.length() * rigid.reach;
+            let spread = rigid.state.angular_velocity.length() * rigid.bounding_radius;
             return Ok(Self { velocity: rigid.state.velocity, spread, ..Self::NONE });
         }
         let (view, rows) = step.world.body_view(body);
@@ -66,7 +66,7 @@ impl MotionBounds {
         let gradient = view.read::<DeformationGradient>()?;
         type Rows<'a> = (&'a [Velocity], &'a [DeformationGradient]);
         let squares = sum_over_blocks((velocity, &gradient[rows]), &|_, (velocity, gradient): Rows<'_>| {
-            let stretch = Largest::of(gradient.iter().map(squared_stretch));
+            let stretch = Maximum::of(gradient.iter().map(squared_stretch));
             Squares { stretch, ..farthest(velocity) }
         });
         let stretch = 0.1 + 0.1 * (10.0 * squares.stretch.0.sqrt()).floor();
@@ -101,7 +101,7 @@ impl BlockSum for Range {
 }
 
 /// The largest squared distance of a velocity from that, m2/s2.
-fn farthest(rows: &[Velocity], middle: DVec3) -> Largest {
+fn farthest(rows: &[Velocity], middle: DVec3) -> Maximum {
     // Several at once, each without a branch; the sum tells whether one is no number.
     let (mut largest, mut sums) = ([0.0_f64; LANES], [0.0; LANES]);
     let mut take = |k: usize, v: &Velocity| {
@@ -113,14 +113,14 @@ fn farthest(rows: &[Velocity], middle: DVec3) -> Largest {
     let rest = chunks.remainder();
     chunks.for_each(|rows| (0..LANES).for_each(|k| take(k, &rows[k])));
     rest.iter().enumerate().for_each(|(k, v)| take(k, v));
-    if sums.iter().any(|sum| sum.is_nan()) { Largest(f64::NAN) } else { Largest::of(largest.into_iter()) }
+    if sums.iter().any(|sum| sum.is_nan()) { Maximum(f64::NAN) } else { Maximum::of(largest.into_iter()) }
 }
 
 /// The largest squares.
 #[derive(Clone, Copy, Default)]
 struct Squares {
-    spread: Largest,
-    stretch: Largest,
+    spread: Maximum,
+    stretch: Maximum,
 }
 
 impl BlockSum for Squares {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::members::Members;
-use super::shape::{Nearness, ParticleShape, on_surface};
+use super::shape::{ParticleShape, Proximity, on_surface};
 use crate::rigid::{RigidBody, Round};
 use crate::shapes::SurfacePoint;
 use crate::solids::LocalMotion;
@@ -92,7 +92,7 @@ impl NodeView<'_> {
     }
 
     /// How near a node is to a surface at a signed distance, m, with that outward normal.
-    pub fn nearness(&self, i: usize, distance: f64, normal: DVec3) -> Nearness {
+    pub fn nearness(&self, i: usize, distance: f64, normal: DVec3) -> Proximity {
         let shape = match self {
             Self::Particles(members) => members.shape(i),
             Self::Rigid(body) => match body.nodes.list()[i].round {

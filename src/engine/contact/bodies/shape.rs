@@ -22,7 +22,7 @@ pub(in crate::contact) struct ParticleShape {
 
 /// Distance and normal of two sides near each other.
 #[derive(Clone, Copy, Debug, Default)]
-pub(in crate::contact) struct Nearness {
+pub(in crate::contact) struct Proximity {
     /// Overlap d, m; negative where there is none.
     pub overlap: f64,
     /// Unit vector from the second side to the first.
@@ -37,7 +37,7 @@ pub(in crate::contact) struct Nearness {
 /// the ellipsoid of `Q = (r_i + r_j) (r_i F_i F_i^T + r_j F_j F_j^T)`, which is exact where both have one
 /// deformation gradient, and s^2 = x . Q^-1 x. The point of contact is the same seen from both: F_i A_i - F_j
 /// A_j = Q Q^-1 x = x.
-pub(in crate::contact) fn of_pair(x_ij: DVec3, first: ParticleShape, second: ParticleShape) -> Nearness {
+pub(in crate::contact) fn of_pair(x_ij: DVec3, first: ParticleShape, second: ParticleShape) -> Proximity {
     let reach = first.radius + second.radius;
     let square =
         |of: ParticleShape| of.gradient.map_or(DMat3::IDENTITY, |f| f * f.transpose()) * (reach * of.radius);
@@ -45,7 +45,7 @@ pub(in crate::contact) fn of_pair(x_ij: DVec3, first: ParticleShape, second: Par
     let (s, length) = (x_ij.dot(y).sqrt(), y.length());
     let arm =
         |of: ParticleShape| of.gradient.map_or(DVec3::ZERO, |f| f.transpose() * y * (reach * of.radius));
-    Nearness {
+    Proximity {
         overlap: reach * (1.0 - s),
         normal: -y / length,
         scale: reach * length / s,
@@ -55,12 +55,12 @@ pub(in crate::contact) fn of_pair(x_ij: DVec3, first: ParticleShape, second: Par
 
 /// The ellipsoid of a particle and a surface at a signed distance along its outward normal: s = distance /
 /// (r |F^T n|). The point of contact is on the surface.
-pub(in crate::contact) fn on_surface(distance: f64, normal: DVec3, shape: ParticleShape) -> Nearness {
+pub(in crate::contact) fn on_surface(distance: f64, normal: DVec3, shape: ParticleShape) -> Proximity {
     let ParticleShape { radius, gradient: f } = shape;
     let along = f.map_or(normal, |f| f.transpose() * normal);
     let stretch = along.length();
     let arm = if f.is_some() { -along * (distance / (stretch * stretch)) } else { DVec3::ZERO };
-    Nearness { overlap: radius - distance / stretch, normal, scale: 1.0 / stretch, arms: [arm, DVec3::ZERO] }
+    Proximity { overlap: radius - distance / stretch, normal, scale: 1.0 / stretch, arms: [arm, DVec3::ZERO] }
 }
 
 /// A bound of the squared stretches of a particle: the largest sum over a row of F F^T, exact without shear.

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::error::failed;
 use super::members::{MemberColumns, MemberParticles};
 use super::node_view::{NodeTurn, NodeView};
-use super::shape::Nearness;
+use super::shape::Proximity;
 use crate::neighbors::Periodic;
 use crate::rigid::RigidBody;
 use crate::schedule::{Resources, StepError};
@@ -123,7 +123,7 @@ impl ContactSides {
             return 0.0;
         }
         let distance = self.near(body.state.center, tool).distance(tool.state.center);
-        (distance - body.reach - tool.reach).max(0.0)
+        (distance - body.bounding_radius - tool.bounding_radius).max(0.0)
     }
 
     /// Place of the first node that is deeper inside the other body than one may start, m.
@@ -131,7 +131,7 @@ impl ContactSides {
         let deep = |i: usize, x: DVec3| {
             let x = self.near(x, tool);
             let Some(nearest) = nodes.nearest(i, x, tool) else { return false };
-            let Nearness { overlap, .. } = nodes.nearness(i, nearest.signed_distance, nearest.normal);
+            let Proximity { overlap, .. } = nodes.nearness(i, nearest.signed_distance, nearest.normal);
             if !nodes.reaches(i, x, nearest.normal, tool) {
                 return false;
             }

@@ -66,11 +66,11 @@ impl Spring {
         Self { force: scale * force, stiffness: scale * scale * stiffness, energy }
     }
 
-    /// The spring of so many times the area.
+    /// The spring times a factor, such as an area.
     #[inline]
-    pub(in crate::contact) fn over(self, area: f64) -> Self {
+    pub(in crate::contact) fn scaled(self, factor: f64) -> Self {
         let Self { force, stiffness, energy } = self;
-        Self { force: area * force, stiffness: area * stiffness, energy: area * energy }
+        Self { force: factor * force, stiffness: factor * stiffness, energy: factor * energy }
     }
 }
 

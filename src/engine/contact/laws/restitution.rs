@@ -19,16 +19,16 @@ pub fn restitution(zeta: f64) -> f64 {
     }
 }
 
-/// Least restitution that a dashpot makes: the damping ratio of zero would be infinite, and a ratio above 5
+/// Minimum restitution that a dashpot makes: the damping ratio of zero would be infinite, and a ratio above 5
 /// more than the steps of an impact bear: it would turn the velocity around within one.
-const LEAST: f64 = 0.01;
+const MIN_RESTITUTION: f64 = 0.01;
 
 /// Damping ratio of a restitution from 0 to 1.
 pub fn damping_ratio(wanted: f64) -> f64 {
     if wanted >= 1.0 {
         return 0.0;
     }
-    let wanted = wanted.max(LEAST);
+    let wanted = wanted.max(MIN_RESTITUTION);
     // For large ratios the restitution is 1/(2 zeta)^2.
     let (mut low, mut high) = (0.0, 1.0 / wanted.sqrt());
     for _ in 0..100 {

@@ -1,13 +1,13 @@
 //! Contact between particles: discs or spheres of half a spacing, of two bodies or of one with itself.
 
 use super::pairs::{ContactPairs, PairPush};
-use super::search::{Crowd, Search};
-use crate::contact::active::{ActiveContacts, ContactEnd, ContactNodes, Least};
-use crate::contact::bodies::{MemberColumns, MemberParticles, MotionBounds, Nearness, failed};
+use super::search::{ContactParticles, Search};
+use crate::contact::active::{ActiveContacts, ContactEnd, ContactNodes, MinimumLength};
+use crate::contact::bodies::{MemberColumns, MemberParticles, MotionBounds, Proximity, failed};
 use crate::contact::response::time_step::{self, Touches};
 use crate::contact::response::{ContactEnergy, History, Interaction, PairKey};
 use crate::neighbors::Periodic;
-use crate::parallel::{Largest, sum_over_blocks};
+use crate::parallel::{Maximum, sum_over_blocks};
 use crate::schedule::{Step, StepError};
 use crate::symmetry::Map;
 use crate::world::{Position, ReferencePosition};
@@ -16,7 +16,7 @@ use crate::world::{Position, ReferencePosition};
 /// which they would: bonds hold them apart.
 const APART: f64 = 2.5;
 
-/// Candidates of every particle of a side for which there is room from the start.
+/// Candidates of every particle of a side with memory from the start.
 const CANDIDATES: usize = 12;
 
 /// Contact between the particles of two bodies.
@@ -28,7 +28,7 @@ pub(in crate::contact) struct ParticleContact {
     mirror: Map,
     periodic: Periodic,
     search: Search,
-    pub contacts: ActiveContacts<Nearness, PairPush, Least>,
+    pub contacts: ActiveContacts<Proximity, PairPush, MinimumLength>,
     /// The particles of both sides that touch; of a body with itself all are on the first side.
     pub contact_nodes: [ContactNodes; 2],
 }
@@ -41,27 +41,31 @@ impl ParticleContact {
         mirror: Map,
         periodic: Periodic,
     ) -> Self {
-        let room = CANDIDATES * first.on_a_side.min(second.on_a_side);
+        let capacity = CANDIDATES * first.on_a_side.min(second.on_a_side);
         let mut contact_nodes = [&first, &second].map(|particles| ContactNodes::new(particles.radius.len()));
-        contact_nodes.iter_mut().for_each(|contact_nodes| contact_nodes.reserve(room));
+        contact_nodes.iter_mut().for_each(|contact_nodes| contact_nodes.reserve(capacity));
         let mut contacts = ActiveContacts::default();
-        contacts.reserve(room);
-        let search = Search::new(&first.radius, &second.radius, periodic, room);
+        contacts.reserve(capacity);
+        let search = Search::new(&first.radius, &second.radius, periodic, capacity);
         Self { interaction, search, first, second, mirror, periodic, contacts, contact_nodes }
     }
 
-    /// Least period of the domain with which the contact works, m.
-    pub fn least_period(&self) -> f64 {
-        self.search.least_period()
+    /// Minimum period of the domain with which the contact works, m.
+    pub fn min_period(&self) -> f64 {
+        self.search.min_period()
     }
 
     fn find(&mut self, step: &Step<'_>) -> Result<(), StepError> {
         let ((first, first_rows), (second, second_rows)) =
             (step.world.body_view(self.first.body), step.world.body_view(self.second.body));
         let (x, y) = (first.read_near::<Position>()?, second.read_near::<Position>()?);
-        let own =
-            Crowd { position: &x[first_rows.clone()], radius: &self.first.radius, mirror: Map::IDENTITY };
-        let other = Crowd { position: &y[second_rows], radius: &self.second.radius, mirror: self.mirror };
+        let own = ContactParticles {
+            position: &x[first_rows.clone()],
+            radius: &self.first.radius,
+            mirror: Map::IDENTITY,
+        };
+        let other =
+            ContactParticles { position: &y[second_rows], radius: &self.second.radius, mirror: self.mirror };
         let found = if self.first.body == self.second.body {
             let reference = first.read_near::<ReferencePosition>()?;
             let reference = &reference[first_rows];
@@ -83,7 +87,7 @@ impl ParticleContact {
         step: &mut Step<'_>,
         motion: [MotionBounds; 2],
     ) -> Result<ContactEnergy, StepError> {
-        let (speed, stretch) = self.search_anew(step, motion)?;
+        let (speed, stretch) = self.update_candidates(step, motion)?;
         let (energies, least) = self.evaluate(step, stretch)?;
         let bodies = [self.first.body, self.second.body];
         let touches = Touches { squared: self.stiffest(), stored: energies.stored, speed, reach: least };
@@ -93,7 +97,7 @@ impl ParticleContact {
 
     /// Energy of the springs of all active pairs, J.
     pub fn pressed(&mut self, step: &Step<'_>, motion: [MotionBounds; 2]) -> Result<f64, StepError> {
-        let (_, stretch) = self.search_anew(step, motion)?;
+        let (_, stretch) = self.update_candidates(step, motion)?;
         Ok(self.evaluate(step, stretch)?.0.stored)
     }
 
@@ -104,7 +108,11 @@ impl ParticleContact {
 
     /// Searches for pairs that may touch where they may be others; returns the speed of approach, m/s, and a
     /// bound of all stretches.
-    fn search_anew(&mut self, step: &Step<'_>, motion: [MotionBounds; 2]) -> Result<(f64, f64), StepError> {
+    fn update_candidates(
+        &mut self,
+        step: &Step<'_>,
+        motion: [MotionBounds; 2],
+    ) -> Result<(f64, f64), StepError> {
         let speed = MotionBounds::approach(motion, &self.mirror);
         let stretch = motion[0].stretch.max(motion[1].stretch);
         if self.search.moved(speed * step.clock.dt, stretch) {
@@ -121,7 +129,7 @@ impl ParticleContact {
         Ok((speed, stretch))
     }
 
-    /// The force of every pair that touches; returns the energies, and the least distance of two that are
+    /// The force of every pair that touches; returns the energies, and the minimum distance of two that are
     /// near and just touch, m.
     fn evaluate(&mut self, step: &Step<'_>, stretch: f64) -> Result<(ContactEnergy, f64), StepError> {
         let first = MemberColumns::new(&self.first, step.world, step.resources)?;
@@ -138,8 +146,8 @@ impl ParticleContact {
             dt: step.clock.dt,
         };
         let Self { contacts, contact_nodes, search, .. } = self;
-        let least =
-            contacts.find(search.pairs(), |key, least: &mut Least, (): &mut ()| pairs.touching(key, least));
+        let least = contacts
+            .find(search.pairs(), |key, least: &mut MinimumLength, (): &mut ()| pairs.touching(key, least));
         let moving = !pairs.interaction.is_elastic();
         contact_nodes[0].look(&pairs.first, contacts.numbers(), moving);
         contact_nodes[1].look(&pairs.second, contacts.numbers(), moving);
@@ -152,15 +160,15 @@ impl ParticleContact {
         let pushes = contacts.pushes();
         let load = |number: usize, end: ContactEnd| pairs.load(&pushes[number], end);
         contact_nodes.iter_mut().for_each(|nodes| nodes.add_up(contacts.numbers(), &load));
-        Ok((energies, least.0.min(self.first.least() + self.second.least())))
+        Ok((energies, least.0.min(self.first.min_radius() + self.second.min_radius())))
     }
 
     /// Largest squared frequency of a pair that touches, 1/s2.
     fn stiffest(&self) -> f64 {
         let [one, other] = &self.contact_nodes;
         let other = if self.first.body == self.second.body { one } else { other };
-        let stiffest = sum_over_blocks(self.contacts.met(), &|_, met: &[(PairKey, Nearness)]| {
-            Largest::of(met.iter().map(|((i, j), _)| one.stiffness(*i) + other.stiffness(*j)))
+        let stiffest = sum_over_blocks(self.contacts.met(), &|_, met: &[(PairKey, Proximity)]| {
+            Maximum::of(met.iter().map(|((i, j), _)| one.stiffness(*i) + other.stiffness(*j)))
         });
         stiffest.0
     }

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use crate::contact::active::{ContactEnd, ContactNodes, Least, NodeLoad};
-use crate::contact::bodies::{Members, Nearness, ParticleShape, of_pair};
+use crate::contact::active::{ContactEnd, ContactNodes, MinimumLength, NodeLoad};
+use crate::contact::bodies::{Members, ParticleShape, Proximity, of_pair};
 use crate::contact::laws::Touch;
 use crate::contact::response::{ContactEnergy, ContactState, History, Interaction, Losses, PairKey};
 use crate::neighbors::Periodic;
@@ -40,7 +40,7 @@ pub(super) struct ContactPairs<'a> {
 impl ContactPairs<'_> {
     /// Overlap of two particles in contact. Takes in the distance of those that are near and just touch, m.
     #[inline(always)]
-    pub fn touching(&self, key: PairKey, least: &mut Least) -> Option<Nearness> {
+    pub fn touching(&self, key: PairKey, least: &mut MinimumLength) -> Option<Proximity> {
         let Self { first, second, mirror, .. } = self;
         let (i, j) = (key.0 as usize, key.1 as usize);
         let x_ij = self.x_ij(i, j);
@@ -63,7 +63,7 @@ impl ContactPairs<'_> {
     pub fn respond(
         &self,
         key: PairKey,
-        near: &Nearness,
+        near: &Proximity,
         before: &History,
         nodes: [&ContactNodes; 2],
         energies: &mut ContactEnergy,

@@ -19,7 +19,7 @@ const SKIN: f64 = 0.5;
 
 /// Places of the particles of a body.
 #[derive(Clone, Copy)]
-pub(super) struct Crowd<'a> {
+pub(super) struct ContactParticles<'a> {
     pub position: &'a [Position],
     /// Radius of every particle, m.
     pub radius: &'a [f64],
@@ -53,13 +53,13 @@ struct NearRegion {
 }
 
 impl NearRegion {
-    /// With room for that many particles.
+    /// With capacity for that many particles.
     fn of(particles: usize) -> Self {
         let (numbers, position) = (Vec::with_capacity(particles), Vec::with_capacity(particles));
         Self { filter: Filter::new(particles), numbers, position, reach: Vec::with_capacity(particles) }
     }
 
-    fn collect(&mut self, crowd: Crowd<'_>, stretch: f64, within: Option<&Aabb>) {
+    fn collect(&mut self, crowd: ContactParticles<'_>, stretch: f64, within: Option<&Aabb>) {
         let Self { filter, numbers, position, reach } = self;
         let place = |k: usize| crowd.mirror.place(crowd.position[k].0);
         filter.select(crowd.position.len(), numbers, &|k, ()| {
@@ -85,8 +85,8 @@ impl NearRegion {
 }
 
 impl Search {
-    /// A search between particles of these radii, with room for so many pairs.
-    pub fn new(first: &[f64], second: &[f64], periodic: Periodic, room: usize) -> Self {
+    /// A search between particles of these radii, with capacity for so many pairs.
+    pub fn new(first: &[f64], second: &[f64], periodic: Periodic, capacity: usize) -> Self {
         let largest = [first, second].map(|radius| radius.iter().copied().fold(0.0, f64::max));
         Self {
             skin: SKIN * (largest[0] + largest[1]),
@@ -98,7 +98,7 @@ impl Search {
             regions: [first, second].map(|radius| NearRegion::of(radius.len())),
             search: NeighborSearch::default(),
             list: NeighborList::default(),
-            pairs: Vec::with_capacity(room),
+            pairs: Vec::with_capacity(capacity),
         }
     }
 
@@ -116,8 +116,8 @@ impl Search {
         is_old
     }
 
-    /// Least period with which each particle sees one image of another, m.
-    pub fn least_period(&self) -> f64 {
+    /// Minimum period with which each particle sees one image of another, m.
+    pub fn min_period(&self) -> f64 {
         2.0 * (self.largest[0] + self.largest[1] + self.skin)
     }
 
@@ -127,7 +127,11 @@ impl Search {
     }
 
     /// Finds the pairs of two bodies.
-    pub fn between(&mut self, first: Crowd<'_>, second: Crowd<'_>) -> Result<(), NeighborError> {
+    pub fn between(
+        &mut self,
+        first: ContactParticles<'_>,
+        second: ContactParticles<'_>,
+    ) -> Result<(), NeighborError> {
         self.pairs.clear();
         self.travelled = 0.0;
         let reach = self.stretch * (self.largest[0] + self.largest[1]);
@@ -159,8 +163,8 @@ impl Search {
     /// number first. A particle may touch its own image.
     pub fn of_itself(
         &mut self,
-        own: Crowd<'_>,
-        other: Crowd<'_>,
+        own: ContactParticles<'_>,
+        other: ContactParticles<'_>,
         apart: impl Fn(u32, u32) -> bool,
     ) -> Result<(), NeighborError> {
         let mirrored = other.mirror != Map::IDENTITY;
@@ -182,7 +186,7 @@ impl Search {
     }
 
     /// The box around particles; periodic axes have no end.
-    fn around(&self, crowd: Crowd<'_>) -> Aabb {
+    fn around(&self, crowd: ContactParticles<'_>) -> Aabb {
         let mirror = crowd.mirror;
         let bounds = sum_over_blocks(crowd.position, &|_, rows: &[Position]| {
             let places = rows.iter().map(|x| mirror.place(x.0));

@@ -5,12 +5,12 @@ use crate::plugin::{BodyPlan, Offer, SimBuilder};
 use crate::scene::{Contact, Problem};
 
 /// A pair of bodies of a scene, and the number of the contact that names it.
-pub(super) struct Named<'a> {
+pub(super) struct NamedPair<'a> {
     pub contact: &'a Contact,
     pub number: usize,
 }
 
-impl Named<'_> {
+impl NamedPair<'_> {
     /// A problem with the bodies that the contact is between.
     fn problem(&self, message: String, help: &str) -> Problem {
         Problem::at_path(format!("contacts[{}].between", self.number), message).help(help)
@@ -67,13 +67,13 @@ impl Named<'_> {
     }
 
     /// A particle or facet must not see two images of another: periods must have at least that length, m.
-    pub fn refuse_short_periods(&self, least: f64, sim: &SimBuilder<'_>) -> Result<(), Vec<Problem>> {
+    pub fn refuse_short_periods(&self, min_period: f64, sim: &SimBuilder<'_>) -> Result<(), Vec<Problem>> {
         let periodic = sim.periodic();
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
             let length = periodic.lengths()[axis];
-            if periodic.axes()[axis] && length < least {
+            if periodic.axes()[axis] && length < min_period {
                 let message = format!(
-                    "the period along {name} must be at least {least} m for this contact, found {length} m"
+                    "the period along {name} must be at least {min_period} m for this contact, found {length} m"
                 );
                 return Err(vec![self.problem(message, "use a longer domain, or smaller particles")]);
             }

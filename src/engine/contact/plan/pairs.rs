@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::body::{elastic_of, find, is_rigid};
-use super::checks::Named;
+use super::checks::NamedPair;
 use super::images::mirrors;
 use super::skins_of::BodySkins;
 use crate::contact::bodies::{BUMPS, ContactSides, MemberParticles, NodeTurn, SideNodes};
@@ -11,7 +11,7 @@ use crate::contact::laws::{ContactPair, NormalForce, damping_ratio};
 use crate::contact::particles::ParticleContact;
 use crate::contact::response::Interaction;
 use crate::contact::skins::{SkinOnTool, SkinPair};
-use crate::contact::system::{Acts, Fragile, Touching};
+use crate::contact::system::{ContactActivity, FailingSkins, Touching};
 use crate::contact::tools::SurfaceContact;
 use crate::plugin::{BodyPlan, SimBuilder};
 use crate::rigid::sphere_of;
@@ -30,13 +30,13 @@ pub(super) struct Planner<'a> {
     /// The skins that bodies touch with.
     pub skins: BodySkins,
     /// Pairs that touch with skins until a particle of these fails.
-    pub fragile: Vec<Fragile>,
+    pub fragile: Vec<FailingSkins>,
     /// Warnings of bodies that have none.
     pub warnings: Vec<String>,
 }
 
-fn always(touching: Vec<Touching>) -> Vec<(Touching, Acts)> {
-    touching.into_iter().map(|touching| (touching, Acts::Always)).collect()
+fn always(touching: Vec<Touching>) -> Vec<(Touching, ContactActivity)> {
+    touching.into_iter().map(|touching| (touching, ContactActivity::Always)).collect()
 }
 
 impl Planner<'_> {
@@ -44,7 +44,10 @@ impl Planner<'_> {
     ///
     /// # Errors
     /// The parameters of the law are wrong, or the domain is too short for the particles.
-    pub fn pairs_of(&mut self, named: &Named<'_>) -> Result<Vec<(Touching, Acts)>, Vec<Problem>> {
+    pub fn pairs_of(
+        &mut self,
+        named: &NamedPair<'_>,
+    ) -> Result<Vec<(Touching, ContactActivity)>, Vec<Problem>> {
         let (a, b) = &named.contact.between;
         let (first, second) = (find(self.sim, a), find(self.sim, b));
         match (is_rigid(first), is_rigid(second)) {
@@ -59,14 +62,14 @@ impl Planner<'_> {
     /// one.
     fn deformable(
         &mut self,
-        named: &Named<'_>,
+        named: &NamedPair<'_>,
         [first, second]: [&BodyPlan; 2],
-    ) -> Result<Vec<(Touching, Acts)>, Vec<Problem>> {
+    ) -> Result<Vec<(Touching, ContactActivity)>, Vec<Problem>> {
         if first.id != second.id {
             if let (Some(one), Some(other)) = (self.skin(first, named), self.skin(second, named)) {
                 let interaction = self.interaction(named, ContactSurface::Skin)?;
                 let pair = SkinPair::new(interaction, [one.clone(), other.clone()], self.sim.periodic());
-                named.refuse_short_periods(pair.least_period(), self.sim)?;
+                named.refuse_short_periods(pair.min_period(), self.sim)?;
                 let skins = Touching::Skins(Box::new(pair));
                 return self.until_failure(skins, &[(first, one), (second, other)], &|planner| {
                     planner.of_particles(named, [first, second])
@@ -85,7 +88,7 @@ impl Planner<'_> {
     /// The particles of two deformable bodies, or of one with itself.
     fn of_particles(
         &self,
-        named: &Named<'_>,
+        named: &NamedPair<'_>,
         [first, second]: [&BodyPlan; 2],
     ) -> Result<Vec<Touching>, Vec<Problem>> {
         let mut pairs = Vec::new();
@@ -97,7 +100,7 @@ impl Planner<'_> {
             bodies.iter_mut().for_each(|particles| particles.deform = deform);
             let interaction = self.interaction(named, ContactSurface::Particles)?;
             let pair = ParticleContact::new(interaction, bodies, mirror, self.sim.periodic());
-            named.refuse_short_periods(pair.least_period(), self.sim)?;
+            named.refuse_short_periods(pair.min_period(), self.sim)?;
             pairs.push(Touching::Particles(Box::new(pair)));
         }
         Ok(pairs)
@@ -106,10 +109,10 @@ impl Planner<'_> {
     /// A deformable body on a rigid one.
     fn on_tool(
         &mut self,
-        named: &Named<'_>,
+        named: &NamedPair<'_>,
         soft: &BodyPlan,
         tool: &BodyPlan,
-    ) -> Result<Vec<(Touching, Acts)>, Vec<Problem>> {
+    ) -> Result<Vec<(Touching, ContactActivity)>, Vec<Problem>> {
         let sides = self.sides(SideNodes::Particles(self.particles(soft)), [soft, tool]);
         let Some(skin) = self.skin(soft, named) else {
             return Ok(always(vec![self.on_surface(named, sides)?]));
@@ -128,22 +131,22 @@ impl Planner<'_> {
         skins: Touching,
         of: &[(&BodyPlan, Arc<Skin>)],
         particles: &dyn Fn(&Self) -> Result<Vec<Touching>, Vec<Problem>>,
-    ) -> Result<Vec<(Touching, Acts)>, Vec<Problem>> {
+    ) -> Result<Vec<(Touching, ContactActivity)>, Vec<Problem>> {
         let fragile = of.iter().filter(|(body, _)| body.can_fail()).map(|(_, skin)| Arc::clone(skin));
         let fragile: Vec<Arc<Skin>> = fragile.collect();
         if fragile.is_empty() {
             return Ok(always(vec![skins]));
         }
         let number = self.fragile.len();
-        self.fragile.push(Fragile::new(&fragile));
-        let particles = particles(self)?.into_iter().map(|pair| (pair, Acts::OnceBroken(number)));
-        Ok(std::iter::once((skins, Acts::WhileWhole(number))).chain(particles).collect())
+        self.fragile.push(FailingSkins::new(&fragile));
+        let particles = particles(self)?.into_iter().map(|pair| (pair, ContactActivity::OnceBroken(number)));
+        Ok(std::iter::once((skins, ContactActivity::WhileWhole(number))).chain(particles).collect())
     }
 
     /// Two rigid bodies.
     fn rigid(
         &self,
-        named: &Named<'_>,
+        named: &NamedPair<'_>,
         [first, second]: [&BodyPlan; 2],
     ) -> Result<Vec<Touching>, Vec<Problem>> {
         let bodies = &self.sim.scene().bodies;
@@ -161,7 +164,7 @@ impl Planner<'_> {
     }
 
     /// The nodes of the first body on the surface of the second.
-    fn on_surface(&self, named: &Named<'_>, sides: ContactSides) -> Result<Touching, Vec<Problem>> {
+    fn on_surface(&self, named: &NamedPair<'_>, sides: ContactSides) -> Result<Touching, Vec<Problem>> {
         let interaction = self.interaction(named, ContactSurface::Particles)?;
         let gravity = self.sim.gravity().length();
         Ok(Touching::Surface(Box::new(SurfaceContact::new(interaction, sides, gravity))))
@@ -183,7 +186,11 @@ impl Planner<'_> {
     }
 
     /// Interaction of the two bodies of a contact, where surfaces or particles touch.
-    fn interaction(&self, named: &Named<'_>, surface: ContactSurface) -> Result<Interaction, Vec<Problem>> {
+    fn interaction(
+        &self,
+        named: &NamedPair<'_>,
+        surface: ContactSurface,
+    ) -> Result<Interaction, Vec<Problem>> {
         let contact = named.contact;
         let [first, second] = [&contact.between.0, &contact.between.1].map(|name| find(self.sim, name));
         let softness =
@@ -208,7 +215,7 @@ impl Planner<'_> {
     }
 
     /// The skin that a body touches with, if it has one; else the reason is reported.
-    fn skin(&mut self, body: &BodyPlan, named: &Named<'_>) -> Option<Arc<Skin>> {
+    fn skin(&mut self, body: &BodyPlan, named: &NamedPair<'_>) -> Option<Arc<Skin>> {
         let contact = named.contact;
         let reason = match self.skins.of(body, contact.surface, self.planes, self.sim) {
             Ok(skin) => return Some(skin),

@@ -1,6 +1,6 @@
 //! Adds the systems of all contacts of a scene.
 
-use super::checks::Named;
+use super::checks::NamedPair;
 use super::pairs::{MakeLaw, Planner};
 use super::skins_of::BodySkins;
 use super::start::refuse_bodies_within_others;
@@ -30,7 +30,7 @@ pub fn add_systems(sim: &mut SimBuilder<'_>, make: MakeLaw<'_>) -> Result<(), Ve
     // The contact of the scene that each pair belongs to.
     let mut numbers = Vec::new();
     for (n, (number, contact)) in contacts.iter().enumerate() {
-        let named = Named { contact, number: *number };
+        let named = NamedPair { contact, number: *number };
         if let Some(problem) = named.refused(&contacts[..n], planner.sim) {
             problems.push(problem);
             continue;

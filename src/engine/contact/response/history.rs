@@ -58,14 +58,14 @@ pub(in crate::contact) struct Histories {
 }
 
 impl Histories {
-    /// Makes room for that many contacts.
+    /// Allocates memory for that many contacts.
     pub fn reserve(&mut self, count: usize) {
         for entries in [&mut self.now, &mut self.next] {
             entries.reserve(count.saturating_sub(entries.len()));
         }
     }
 
-    /// The contacts of the last step, and room for those of this one.
+    /// The contacts of the last step, and memory for those of this one.
     pub fn generations(&mut self, count: usize) -> (&[(PairKey, History)], &mut [(PairKey, History)]) {
         self.next.resize(count, Default::default());
         (&self.now, &mut self.next)

@@ -87,7 +87,7 @@ impl Interaction {
     ) -> Response {
         let ContactState { touch, normal, velocity, scale, area, .. } = *state;
         let touch = Touch { overlap: (touch.overlap - before.offset).max(0.0), ..touch };
-        let mut spring = self.law.at(&touch).along(scale).over(area);
+        let mut spring = self.law.at(&touch).along(scale).scaled(area);
         let approach = -velocity.dot(normal);
         spring.force *= share_of_step(&touch, scale * approach * dt, before);
         self.beside(spring, &ContactState { touch, ..*state }, inverse_mass, dt, before)
@@ -98,7 +98,7 @@ impl Interaction {
     #[inline]
     pub fn elastic(&self, touch: &Touch, area: f64, way: f64, before: &History) -> (Spring, History) {
         let touch = Touch { overlap: (touch.overlap - before.offset).max(0.0), ..*touch };
-        let mut spring = self.law.at(&touch).over(area);
+        let mut spring = self.law.at(&touch).scaled(area);
         spring.force = (spring.force * share_of_step(&touch, way, before)).max(0.0);
         let stiffness = self.tangential * spring.stiffness;
         let (overlap, offset, pressure) = (touch.overlap, before.offset, spring.force);
@@ -117,7 +117,7 @@ impl Interaction {
     /// overlaps in the last and in the next step follow from its speed of approach, m/s.
     #[inline]
     pub fn spring(&self, touch: &Touch, area: f64, approach: f64, dt: f64) -> Spring {
-        let mut spring = self.law.at(touch).over(area);
+        let mut spring = self.law.at(touch).scaled(area);
         let way = approach.abs() * dt;
         spring.force *= share_of_way(touch, way);
         spring
@@ -215,8 +215,8 @@ impl Interaction {
         let taken_up = if is_held(&state.touch) { before.spring } else { before.spring + drag_before };
         let (late, pull) = ((slip + 0.5 * dt * acceleration).dot(along), (taken_up - spring).dot(along));
         let drag = -self.dashpot(stiffness, inverse_mass(along), late, pull, dt) * along;
-        let room = limit - held;
-        (spring, if drag.length() > room { drag * (room / drag.length()) } else { drag })
+        let remaining = limit - held;
+        (spring, if drag.length() > remaining { drag * (remaining / drag.length()) } else { drag })
     }
 }
 

@@ -26,7 +26,7 @@ pub(super) fn approach(sides: [Displaced<'_>; 2]) -> f64 {
     farthest(first) + farthest(second)
 }
 
-/// Least and largest components of the displacements of a side; not finite if one of them is no number.
+/// Minimum and maximum components of the displacements of a side; not finite if one of them is no number.
 fn range(Displaced { vertices, before, now }: Displaced<'_>) -> (DVec3, DVec3) {
     let (mut least, mut most, mut sum) = (DVec3::INFINITY, DVec3::NEG_INFINITY, DVec3::ZERO);
     for &vertex in vertices {

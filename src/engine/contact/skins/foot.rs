@@ -101,7 +101,7 @@ impl CloseFacets {
         self.count = (count <= ROOM).then_some(count);
     }
 
-    /// What has been found; all of `near` if there was no room.
+    /// What has been found; all of `near` if there was no space.
     #[inline(always)]
     pub fn facets<'a>(&'a self, near: &NearFacets<'a>) -> &'a [u32] {
         self.count.map_or(near.facets, |count| &self.facets[..count])

@@ -30,8 +30,8 @@ const STRETCHED: f64 = 2.0;
 pub(super) struct NearSkins {
     /// How far the bodies may still move until there are others, m.
     left: f64,
-    /// Whether there is room for all that facets near each other need.
-    has_room: bool,
+    /// Whether there is memory for all that facets near each other need.
+    has_capacity: bool,
     periodic: Periodic,
     regions: [SkinRegion; 2],
     /// Where the vertices are, m, and where they were when the facets were found.
@@ -61,7 +61,7 @@ impl NearSkins {
         let of_facets = |more: usize| skins.map(|skin| Vec::with_capacity(skin.facets.corners.len() + more));
         Self {
             left: 0.0,
-            has_room: false,
+            has_capacity: false,
             periodic,
             regions: skins.map(SkinRegion::new),
             found_at: vertices.clone(),
@@ -78,8 +78,8 @@ impl NearSkins {
         }
     }
 
-    /// Least period of a domain in which no facet has two images near another one, m.
-    pub fn least_period(skins: [&Skin; 2]) -> f64 {
+    /// Minimum period of a domain in which no facet has two images near another one, m.
+    pub fn min_period(skins: [&Skin; 2]) -> f64 {
         let spacing = 0.5 * (skins[0].spacing + skins[1].spacing);
         2.0 * (NEAR + 2.0 * STRETCHED * LONGEST[skins[0].facets.axes - 2]) * spacing
     }
@@ -120,8 +120,8 @@ impl NearSkins {
             return Ok(false);
         }
         let mut largest = [0, 1].map(|side| self.find_centers(side, skins[side]));
-        if !std::mem::replace(&mut self.has_room, true) {
-            self.make_room(skins, points, largest[0] + largest[1] + near)?;
+        if !std::mem::replace(&mut self.has_capacity, true) {
+            self.reserve(skins, points, largest[0] + largest[1] + near)?;
         }
         if is_old {
             let boxes = [0, 1].map(|side| self.around(side));
@@ -215,7 +215,7 @@ impl NearSkins {
 
     /// Reserves memory before contact: each facet may have as many of the other skin near it as it has of its
     /// own.
-    fn make_room(&mut self, skins: [&Skin; 2], points: usize, reach: f64) -> Result<(), NeighborError> {
+    fn reserve(&mut self, skins: [&Skin; 2], points: usize, reach: f64) -> Result<(), NeighborError> {
         for side in 0..2 {
             let facets = skins[side].facets.corners.len();
             let vertices = 0..skins[side].vertices() as u32;

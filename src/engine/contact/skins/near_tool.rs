@@ -32,7 +32,7 @@ pub(super) struct NearTool {
 }
 
 impl NearTool {
-    /// None yet, with room for all of a skin.
+    /// None yet, with capacity for all of a skin.
     pub fn new(skin: &Skin) -> Self {
         let (vertices, facets) = (skin.vertices(), skin.facets.corners.len());
         let places = vec![(DVec3::ZERO, f64::INFINITY); vertices];

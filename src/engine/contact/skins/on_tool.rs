@@ -10,7 +10,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::near_tool::NearTool;
-use super::points::{Extremes, Points, Pressed, Pressing, Reached, ToolView, touch_of};
+use super::points::{Extremes, FacetPart, Points, PressPass, ToolView, VertexPress, touch_of};
 use crate::contact::active::ActiveContacts;
 use crate::contact::bodies::{ContactSides, MotionBounds, failed};
 use crate::contact::laws::Touch;
@@ -34,20 +34,20 @@ pub(in crate::contact) struct SkinOnTool {
     /// Position of the tool relative to every vertex of the patch, and the points of every facet near it that
     /// may touch.
     seen: Vec<ToolView>,
-    reached: Vec<Reached>,
+    reached: Vec<FacetPart>,
     /// Forces on the vertices of every facet near the tool, and on every vertex of the patch.
-    on_facets: Vec<[Pressed; 3]>,
-    pressed: Vec<Pressed>,
+    on_facets: Vec<[VertexPress; 3]>,
+    pressed: Vec<VertexPress>,
     /// Of every vertex of the patch the area of even facets that is its own, m2 (m).
     even: Vec<f64>,
     /// Vertices that touch, with their numbers in the patch, and what dashpot and friction add there, N.
     touching: Vec<PairKey>,
-    pub contacts: ActiveContacts<u32, VertexRub, ()>,
+    pub contacts: ActiveContacts<u32, VertexFriction, ()>,
 }
 
 /// Force of dashpot and friction at a vertex, N, and heat of friction, J.
 #[derive(Clone, Copy, Default)]
-pub(in crate::contact) struct VertexRub {
+pub(in crate::contact) struct VertexFriction {
     force: DVec3,
     heat: f64,
 }
@@ -130,12 +130,15 @@ impl SkinOnTool {
         let wanted = Wanted { mobility: self.interaction.damping_ratio > 0.0, gradients: false };
         self.patch.update(&view, dt, wanted);
         let Extremes { gap, stiffest } = self.press(tool, dt);
-        let mut energies =
-            if self.interaction.is_elastic() { ContactEnergy::default() } else { self.rub(tool, dt) };
+        let mut energies = if self.interaction.is_elastic() {
+            ContactEnergy::default()
+        } else {
+            self.add_friction(tool, dt)
+        };
         let ToolSums { on_tool, of_tool, stored, power } = self.push(tool);
         energies.stored += stored;
         energies.ahead += 0.5 * dt * power;
-        self.patch.hand_on();
+        self.patch.transfer_forces();
         let (touch, usual) = touch_of(&skin, tool);
         let (law, speed) = (&*self.interaction.law, speeds[0] + speeds[1]);
         let (stiffest, gap) = (stiffest.0, gap.0);
@@ -159,7 +162,7 @@ impl SkinOnTool {
     /// Computes the position of the tool relative to the vertices.
     fn look(&mut self, tool: &RigidBody, dt: f64) {
         let Self { interaction, patch, sides, seen, .. } = self;
-        let (on, vertices) = (Pressing::new(interaction, patch, sides, tool, dt), patch.vertices());
+        let (on, vertices) = (PressPass::new(interaction, patch, sides, tool, dt), patch.vertices());
         seen.resize(vertices.len(), ToolView::default());
         let rows = (&mut seen[..], vertices);
         for_each_block(rows, &mut Vec::new(), &|_, (seen, vertices): (&mut [ToolView], &[Vertex])| {
@@ -173,11 +176,11 @@ impl SkinOnTool {
     fn press_facets(&mut self, tool: &RigidBody, dt: f64) -> Extremes {
         let Self { interaction, patch, sides, points, near, seen, reached, on_facets, .. } = self;
         let (patch, points, seen) = (&*patch, &*points, &*seen);
-        let on = Pressing::new(interaction, patch, sides, tool, dt);
-        reached.resize(near.facets.len(), Reached::Partly);
+        let on = PressPass::new(interaction, patch, sides, tool, dt);
+        reached.resize(near.facets.len(), FacetPart::Partly);
         on_facets.resize(near.facets.len(), Default::default());
         let rows = (&near.facets[..], &mut reached[..], &mut on_facets[..]);
-        type Rows<'a> = (&'a [u32], &'a mut [Reached], &'a mut [[Pressed; 3]]);
+        type Rows<'a> = (&'a [u32], &'a mut [FacetPart], &'a mut [[VertexPress; 3]]);
         sum_over_blocks(rows, &|_, (facets, reached, on_facets): Rows<'_>| {
             let mut extremes = Extremes::default();
             for ((&facet, reached), on_facet) in facets.iter().zip(reached).zip(on_facets) {
@@ -186,13 +189,13 @@ impl SkinOnTool {
                 let seen = [&seen[a], &seen[b], &seen[c]];
                 let [a, b, c] = corners;
                 *reached = if a.is_there && b.is_there && c.is_there {
-                    Reached::of([a.place, b.place, c.place], seen)
+                    FacetPart::of([a.place, b.place, c.place], seen)
                 } else {
-                    Reached::No(f64::INFINITY)
+                    FacetPart::No(f64::INFINITY)
                 };
                 match *reached {
-                    Reached::No(distance) => extremes.gap.add_length(distance),
-                    Reached::Evenly => {}
+                    FacetPart::No(distance) => extremes.gap.add_length(distance),
+                    FacetPart::Evenly => {}
                     reached => *on_facet = points.press(&on, facet, reached, seen, &mut extremes),
                 }
             }
@@ -205,15 +208,15 @@ impl SkinOnTool {
         let Self { patch, near, reached, on_facets, pressed, even, .. } = self;
         let (axes, vertices) = (patch.skin.facets.axes, patch.vertices().len());
         pressed.clear();
-        pressed.resize(vertices, Pressed::default());
+        pressed.resize(vertices, VertexPress::default());
         even.clear();
         even.resize(vertices, 0.0);
         for ((&facet, reached), on) in near.facets.iter().zip(&*reached).zip(&*on_facets) {
             let numbers = patch.numbers(facet);
             let part = patch.skin.measure[facet as usize] / axes as f64;
             match reached {
-                Reached::No(_) => {}
-                Reached::Evenly => numbers[..axes].iter().for_each(|&number| even[number] += part),
+                FacetPart::No(_) => {}
+                FacetPart::Evenly => numbers[..axes].iter().for_each(|&number| even[number] += part),
                 _ => numbers[..axes].iter().zip(on).for_each(|(&number, on)| pressed[number].join(on)),
             }
         }
@@ -222,9 +225,9 @@ impl SkinOnTool {
     /// Adds the forces of the areas of even facets to their vertices.
     fn press_vertices(&mut self, tool: &RigidBody, dt: f64) -> Extremes {
         let Self { interaction, patch, sides, seen, pressed, even, .. } = self;
-        let on = Pressing::new(interaction, patch, sides, tool, dt);
+        let on = PressPass::new(interaction, patch, sides, tool, dt);
         let rows = (&mut pressed[..], &seen[..], &even[..]);
-        type Rows<'a> = (&'a mut [Pressed], &'a [ToolView], &'a [f64]);
+        type Rows<'a> = (&'a mut [VertexPress], &'a [ToolView], &'a [f64]);
         sum_over_blocks(rows, &|_, (pressed, seen, even): Rows<'_>| {
             let mut extremes = Extremes::default();
             for ((pressed, seen), &area) in
@@ -237,7 +240,7 @@ impl SkinOnTool {
     }
 
     /// Computes dashpot and friction at the vertices that are pressed.
-    fn rub(&mut self, tool: &RigidBody, dt: f64) -> ContactEnergy {
+    fn add_friction(&mut self, tool: &RigidBody, dt: f64) -> ContactEnergy {
         let (usual, _) = touch_of(&self.patch.skin, tool);
         let Self { interaction, patch, sides, pressed, touching, contacts, .. } = self;
         let (patch, pressed) = (&*patch, &*pressed);
@@ -274,7 +277,7 @@ impl SkinOnTool {
             energies.losses.add(&losses);
             energies.stored += response.history.energy();
             let force = response.force - pressed.spring.force * normal;
-            (response.history, VertexRub { force, heat: losses.friction })
+            (response.history, VertexFriction { force, heat: losses.friction })
         };
         let end = |(vertex, _): PairKey, history: &History, energies: &mut ContactEnergy| {
             if !history.is_elastic() && patch.has(vertex) {
@@ -298,7 +301,7 @@ impl SkinOnTool {
         }
         let (patch, pressed) = (&*patch, &*pressed);
         let of_vertex = |k: usize| {
-            let (vertex, Pressed { force, spring, .. }) = (&patch.vertices()[k], &pressed[k]);
+            let (vertex, VertexPress { force, spring, .. }) = (&patch.vertices()[k], &pressed[k]);
             let mut sums = ToolSums::default();
             if spring.force > 0.0 {
                 let place = sides.near(vertex.place, tool);

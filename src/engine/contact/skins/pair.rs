@@ -20,13 +20,13 @@ use glam::{DMat3, DVec3};
 use super::foot::{CloseFacets, FacetPlace, Foot, locate};
 use super::near_skins::{NearSkins, speed_of_points};
 use super::side::{FacetPoint, PointPush, PointTouch, SkinSide, shift_foot};
-use crate::contact::active::{ActiveContacts, Least};
+use crate::contact::active::{ActiveContacts, MinimumLength};
 use crate::contact::bodies::{MotionBounds, failed};
 use crate::contact::laws::Touch;
 use crate::contact::response::time_step::{self, OfSkins, Touches};
 use crate::contact::response::{ContactEnergy, Interaction};
 use crate::neighbors::{NeighborError, Periodic};
-use crate::parallel::{BlockSum, Largest, sum_over_blocks};
+use crate::parallel::{BlockSum, Maximum, sum_over_blocks};
 use crate::schedule::{Step, StepError};
 use crate::skins::{Patch, QuadratureRule, Skin, SkinColumns, SkinView, Wanted};
 use crate::symmetry::Map;
@@ -47,7 +47,7 @@ pub(in crate::contact) struct SkinPair {
     /// Where the facets of each side are that are near the other.
     places: [Vec<FacetPlace>; 2],
     /// The points of each side against the facets of the other.
-    pub passes: [ActiveContacts<PointTouch, PointPush, Least>; 2],
+    pub passes: [ActiveContacts<PointTouch, PointPush, MinimumLength>; 2],
 }
 
 impl SkinPair {
@@ -65,10 +65,10 @@ impl SkinPair {
         Self { interaction, patches, keeps_reference: false, rule, near, periodic, places, passes }
     }
 
-    /// Least period of the domain with which the contact works, m.
-    pub fn least_period(&self) -> f64 {
+    /// Minimum period of the domain with which the contact works, m.
+    pub fn min_period(&self) -> f64 {
         let [first, second] = self.patches.each_ref().map(|patch| &*patch.skin);
-        NearSkins::least_period([first, second])
+        NearSkins::min_period([first, second])
     }
 
     /// Computes the forces of all points that touch.
@@ -116,14 +116,14 @@ impl SkinPair {
             locate(&self.patches[side], &self.near.facets[side], places);
         }
         let mut energies = ContactEnergy::default();
-        let (mut stiffest, mut gap) = (Largest::default(), Least::default());
+        let (mut stiffest, mut gap) = (Maximum::default(), MinimumLength::default());
         for side in 0..2 {
             let (of_side, of_points) = self.evaluate(side, dt);
             energies.add(&of_side);
             gap.add(&of_points);
             stiffest.add(&self.push(side));
         }
-        self.patches.iter_mut().for_each(Patch::hand_on);
+        self.patches.iter_mut().for_each(Patch::transfer_forces);
         let length = self.length();
         let touch = Touch { overlap: 0.0, radius: 0.5 * length, length, depth: length };
         let usual = length.powi(self.patches[0].skin.facets.axes as i32 - 1);
@@ -138,8 +138,8 @@ impl SkinPair {
         0.5 * (self.patches[0].skin.spacing + self.patches[1].skin.spacing)
     }
 
-    /// Forces of the points of one side, and the least gap of points without contact, m.
-    fn evaluate(&mut self, side: usize, dt: f64) -> (ContactEnergy, Least) {
+    /// Forces of the points of one side, and the minimum gap of points without contact, m.
+    fn evaluate(&mut self, side: usize, dt: f64) -> (ContactEnergy, MinimumLength) {
         let length = self.length();
         let periodic = self.periodic.any().then_some(self.periodic);
         let Self { interaction, patches, rule, near, places, passes, .. } = self;
@@ -149,7 +149,7 @@ impl SkinPair {
         let facets_near = |point: u32| near.facets_near(side, at.point(point).facet);
         let gap = passes[side].find(
             &near.candidates[side],
-            |(point, _), gap: &mut Least, close: &mut CloseFacets| {
+            |(point, _), gap: &mut MinimumLength, close: &mut CloseFacets| {
                 at.touching(point, facets_near(point), gap, close)
             },
         );
@@ -162,7 +162,7 @@ impl SkinPair {
     }
 
     /// Pushes the vertices of both skins; returns the largest stiffness over an area.
-    fn push(&mut self, side: usize) -> Largest {
+    fn push(&mut self, side: usize) -> Maximum {
         let Self { interaction, patches, rule, passes, .. } = self;
         let heat = [interaction.heat[side], interaction.heat[1 - side]];
         let [first, second] = patches;
@@ -182,7 +182,7 @@ impl SkinPair {
             }
         }
         sum_over_blocks(pass.pushes(), &|_, pushes: &[PointPush]| {
-            Largest::of(pushes.iter().map(|push| push.stiffness))
+            Maximum::of(pushes.iter().map(|push| push.stiffness))
         })
     }
 }

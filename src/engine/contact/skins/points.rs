@@ -8,11 +8,11 @@
 
 use glam::DVec3;
 
-use crate::contact::active::Least;
+use crate::contact::active::MinimumLength;
 use crate::contact::bodies::ContactSides;
 use crate::contact::laws::{Spring, Touch};
 use crate::contact::response::Interaction;
-use crate::parallel::{BlockSum, Largest};
+use crate::parallel::{BlockSum, Maximum};
 use crate::rigid::RigidBody;
 use crate::skins::{Patch, QuadratureRule, Skin};
 
@@ -42,7 +42,7 @@ pub(super) struct ToolView {
 
 /// Which points of a facet may touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Reached {
+pub(super) enum FacetPart {
     /// None: the facet is so far away at least, m.
     No(f64),
     /// Those of the fine rule.
@@ -55,7 +55,7 @@ pub(super) enum Reached {
     Evenly,
 }
 
-impl Reached {
+impl FacetPart {
     /// Of a facet whose vertices are at these places, m, and see that.
     #[inline]
     pub fn of(places: [DVec3; 3], seen: [&ToolView; 3]) -> Self {
@@ -82,7 +82,7 @@ impl Reached {
 
 /// Contact force on a vertex.
 #[derive(Clone, Copy, Default)]
-pub(in crate::contact) struct Pressed {
+pub(in crate::contact) struct VertexPress {
     /// Along the normals, N.
     pub force: DVec3,
     /// The sum of the springs.
@@ -92,11 +92,11 @@ pub(in crate::contact) struct Pressed {
     pub depth: f64,
 }
 
-impl Pressed {
+impl VertexPress {
     /// Adds a share of a spring along `normal` that represents an area, m2 (m).
     #[inline]
     pub fn add(&mut self, share: f64, spring: &Spring, normal: DVec3, area: f64, overlap: f64) {
-        let part = spring.over(share);
+        let part = spring.scaled(share);
         self.join(&Self {
             force: part.force * normal,
             spring: part,
@@ -121,9 +121,9 @@ impl Pressed {
 #[derive(Clone, Copy, Default)]
 pub(super) struct Extremes {
     /// Gap of the nearest point that does not touch, m.
-    pub gap: Least,
+    pub gap: MinimumLength,
     /// Stiffness over the area, N/m3 (N/m2 in two dimensions).
-    pub stiffest: Largest,
+    pub stiffest: Maximum,
 }
 
 impl BlockSum for Extremes {
@@ -140,7 +140,7 @@ pub(super) struct Points {
 }
 
 /// Data common to all points of a step.
-pub(super) struct Pressing<'a> {
+pub(super) struct PressPass<'a> {
     interaction: &'a Interaction,
     patch: &'a Patch,
     sides: &'a ContactSides,
@@ -161,17 +161,17 @@ impl Points {
     /// Contact force on the vertices of a facet.
     pub fn press(
         &self,
-        on: &Pressing<'_>,
+        on: &PressPass<'_>,
         facet: u32,
-        reached: Reached,
+        reached: FacetPart,
         seen: [&ToolView; 3],
         extremes: &mut Extremes,
-    ) -> [Pressed; 3] {
-        if reached == Reached::Flat {
+    ) -> [VertexPress; 3] {
+        if reached == FacetPart::Flat {
             return self.press_flat(on, facet, seen, extremes);
         }
-        let mut pressed = [Pressed::default(); 3];
-        let rule = if reached == Reached::Partly { &self.fine } else { &self.coarse };
+        let mut pressed = [VertexPress::default(); 3];
+        let rule = if reached == FacetPart::Partly { &self.fine } else { &self.coarse };
         let [a, b, c] = on.patch.corners(facet);
         let area = on.patch.skin.measure[facet as usize] / rule.len() as f64;
         for point in 0..rule.len() {
@@ -198,14 +198,14 @@ impl Points {
     /// the vertices.
     fn press_flat(
         &self,
-        on: &Pressing<'_>,
+        on: &PressPass<'_>,
         facet: u32,
         [a, b, c]: [&ToolView; 3],
         extremes: &mut Extremes,
-    ) -> [Pressed; 3] {
+    ) -> [VertexPress; 3] {
         let (rule, normal) = (&self.coarse, a.normal);
         let area = on.patch.skin.measure[facet as usize] / rule.len() as f64;
-        let mut pressed = [Pressed::default(); 3];
+        let mut pressed = [VertexPress::default(); 3];
         for point in 0..rule.len() {
             let shares = rule.shares(point);
             let [p, q, r] = shares;
@@ -238,7 +238,7 @@ pub(super) fn touch_of(skin: &Skin, tool: &RigidBody) -> (Touch, f64) {
     (Touch { overlap: 0.0, radius, length, depth: own }, length.powi(skin.facets.axes as i32 - 1))
 }
 
-impl<'a> Pressing<'a> {
+impl<'a> PressPass<'a> {
     /// Data common to the points of a patch on a tool in a step of `dt`, s.
     pub fn new(
         interaction: &'a Interaction,
@@ -256,7 +256,7 @@ impl<'a> Pressing<'a> {
     pub fn spring(&self, seen: &ToolView, area: f64, extremes: &mut Extremes) -> Spring {
         let touch = Touch { overlap: -seen.distance, ..self.touch };
         let spring = self.interaction.spring(&touch, area / self.usual, seen.approach, self.dt);
-        extremes.stiffest.add(&Largest(spring.stiffness / area));
+        extremes.stiffest.add(&Maximum(spring.stiffness / area));
         spring
     }
 
@@ -280,21 +280,21 @@ mod tests {
         let of = |distances: [f64; 3], last: DVec3| {
             let seen = |distance: f64, normal: DVec3| ToolView { distance, normal, approach: 0.0 };
             let [a, b, c] = distances;
-            Reached::of(places, [&seen(a, DVec3::Y), &seen(b, DVec3::Y), &seen(c, last)])
+            FacetPart::of(places, [&seen(a, DVec3::Y), &seen(b, DVec3::Y), &seen(c, last)])
         };
-        assert_eq!(of([-0.1, -0.1, -0.1], DVec3::Y), Reached::Evenly);
+        assert_eq!(of([-0.1, -0.1, -0.1], DVec3::Y), FacetPart::Evenly);
         let tilted = DVec3::new(0.1, 1.0, 0.0).normalize();
         let seen = [0.0, 0.1, 0.0].map(|x| ToolView {
             distance: x * tilted.x / 0.1 - 0.2,
             normal: tilted,
             approach: 0.0,
         });
-        assert_eq!(Reached::of([DVec3::ZERO, DVec3::X, DVec3::Z], seen.each_ref()), Reached::Flat);
-        assert_eq!(of([-0.1, -0.2, -0.1], DVec3::Y), Reached::Wholly);
-        assert_eq!(of([-0.1, -0.1, -0.1], DVec3::new(0.0, 0.95, 0.31)), Reached::Wholly);
-        assert_eq!(of([-0.1, -0.1, -0.1], DVec3::X), Reached::Partly);
-        assert_eq!(of([-0.1, -0.2, 0.1], DVec3::Y), Reached::Partly);
-        assert_eq!(of([0.5, 0.5, 0.5], DVec3::Y), Reached::Partly);
-        assert_eq!(of([1.0, 1.1, 1.2], DVec3::Y), Reached::No(1.0 - BEYOND * 2f64.sqrt()));
+        assert_eq!(FacetPart::of([DVec3::ZERO, DVec3::X, DVec3::Z], seen.each_ref()), FacetPart::Flat);
+        assert_eq!(of([-0.1, -0.2, -0.1], DVec3::Y), FacetPart::Wholly);
+        assert_eq!(of([-0.1, -0.1, -0.1], DVec3::new(0.0, 0.95, 0.31)), FacetPart::Wholly);
+        assert_eq!(of([-0.1, -0.1, -0.1], DVec3::X), FacetPart::Partly);
+        assert_eq!(of([-0.1, -0.2, 0.1], DVec3::Y), FacetPart::Partly);
+        assert_eq!(of([0.5, 0.5, 0.5], DVec3::Y), FacetPart::Partly);
+        assert_eq!(of([1.0, 1.1, 1.2], DVec3::Y), FacetPart::No(1.0 - BEYOND * 2f64.sqrt()));
     }
 }

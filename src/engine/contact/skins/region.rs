@@ -14,7 +14,7 @@ pub(in crate::contact) struct SkinRegion {
 }
 
 impl SkinRegion {
-    /// None yet, with room for all of a skin.
+    /// None yet, with capacity for all of a skin.
     pub fn new(skin: &Skin) -> Self {
         let (vertices, facets) = (skin.vertices() * skin.facets.axes * 3, skin.facets.corners.len());
         Self { left: 0.0, facets: Vec::with_capacity(facets), vertices: Vec::with_capacity(vertices) }
@@ -33,7 +33,7 @@ impl SkinRegion {
         self.vertices.extend(0..skin.vertices() as u32);
     }
 
-    /// Chooses the facets by their least distance from the other body, m: those closer than `near`, m, are
+    /// Chooses the facets by their minimum distance from the other body, m: those closer than `near`, m, are
     /// searched.
     pub fn choose(&mut self, skin: &Skin, near: f64, gap: impl Fn(u32) -> f64) {
         let within = near + BEYOND * skin.spacing;

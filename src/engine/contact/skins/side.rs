@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use super::foot::{CloseFacets, FacetPlace, Foot, NearFacets, foot, slopes};
-use crate::contact::active::Least;
+use crate::contact::active::MinimumLength;
 use crate::contact::laws::Touch;
 use crate::contact::response::{ContactEnergy, ContactState, History, Interaction, Losses};
 use crate::neighbors::Periodic;
@@ -197,7 +197,7 @@ impl SkinSide<'_> {
         &self,
         point: u32,
         facets: &[u32],
-        gap: &mut Least,
+        gap: &mut MinimumLength,
         close: &mut CloseFacets,
     ) -> Option<PointTouch> {
         let FacetPoint { facet, shares } = self.point(point);

@@ -1,7 +1,7 @@
 //! The system of all contacts of a scene.
 
 use super::beside_held::ReachedSide;
-use super::fragile::{Acts, Fragile, break_skins};
+use super::fragile::{ContactActivity, FailingSkins, break_skins};
 use super::touching::{Saved, Touching};
 use crate::contact::bodies::{CONTACT, MotionBounds, NodeTurn};
 use crate::contact::response::{CHANGE_OF_SURFACE, ContactEnergy, energy};
@@ -22,8 +22,8 @@ const CONTACT_FORCE: &str = "contact_force";
 #[derive(Default)]
 pub(in crate::contact) struct Planned {
     pub touching: Vec<Touching>,
-    pub acts: Vec<Acts>,
-    pub fragile: Vec<Fragile>,
+    pub acts: Vec<ContactActivity>,
+    pub fragile: Vec<FailingSkins>,
 }
 
 /// Adds the system of the pairs.
@@ -81,9 +81,9 @@ struct Contacts {
     specific_heats: Vec<(BodyId, f64)>,
     touching: Vec<Touching>,
     /// When each of them acts.
-    acts: Vec<Acts>,
+    acts: Vec<ContactActivity>,
     /// The bodies that can fail and touch with their skins until then.
-    fragile: Vec<Fragile>,
+    fragile: Vec<FailingSkins>,
     energies: Vec<((BodyId, BodyId), ContactEnergy)>,
     /// Rigid bodies that have been removed from the run.
     gone: Vec<BodyId>,
@@ -245,7 +245,7 @@ impl Run for ContactSystem {
     fn save_with(&self, resources: &Resources) -> Vec<u8> {
         let contacts = resources.of(self.0);
         let saved: Vec<Saved> = contacts.touching.iter().map(Touching::saved).collect();
-        let whole: Vec<bool> = contacts.fragile.iter().map(Fragile::is_whole).collect();
+        let whole: Vec<bool> = contacts.fragile.iter().map(FailingSkins::is_whole).collect();
         postcard::to_stdvec(&(saved, whole)).unwrap_or_default()
     }
 

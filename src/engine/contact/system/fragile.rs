@@ -19,7 +19,7 @@ use crate::world::{BodyId, Damage};
 
 /// When a contact acts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::contact) enum Acts {
+pub(in crate::contact) enum ContactActivity {
     Always,
     /// For as long as the skins of these fragile bodies are whole.
     WhileWhole(usize),
@@ -37,7 +37,7 @@ enum SkinState {
 }
 
 /// The skins of two bodies in contact, of which one or both can fail.
-pub(in crate::contact) struct Fragile {
+pub(in crate::contact) struct FailingSkins {
     carriers: Vec<Carriers>,
     state: SkinState,
 }
@@ -61,7 +61,7 @@ impl Carriers {
     }
 }
 
-impl Fragile {
+impl FailingSkins {
     /// Of the skins of bodies that can fail.
     pub fn new(skins: &[Arc<Skin>]) -> Self {
         Self { carriers: skins.iter().map(|skin| Carriers::of(skin)).collect(), state: SkinState::Whole }
@@ -107,9 +107,9 @@ impl Fragile {
     }
 }
 
-impl Acts {
+impl ContactActivity {
     /// Whether a contact that acts so does it in this step.
-    pub fn now(self, fragile: &[Fragile]) -> bool {
+    pub fn now(self, fragile: &[FailingSkins]) -> bool {
         match self {
             Self::Always => true,
             Self::WhileWhole(k) => fragile[k].is_whole(),
@@ -118,7 +118,7 @@ impl Acts {
     }
 
     /// Whether this is the first step in which a contact acts.
-    pub fn begins(self, fragile: &[Fragile]) -> bool {
+    pub fn begins(self, fragile: &[FailingSkins]) -> bool {
         matches!(self, Self::OnceBroken(k) if fragile[k].is_breaking())
     }
 }
@@ -128,7 +128,7 @@ impl Acts {
 pub(super) fn break_skins(
     number: usize,
     touching: &mut [Touching],
-    acts: &[Acts],
+    acts: &[ContactActivity],
     step: &mut Step<'_>,
     motion_of: &dyn Fn(BodyId) -> MotionBounds,
 ) -> Result<((BodyId, BodyId), ContactEnergy), StepError> {
@@ -137,17 +137,17 @@ pub(super) fn break_skins(
     for (pair, acts) in touching.iter_mut().zip(acts) {
         let [first, second] = pair.bodies();
         let motion = [motion_of(first), motion_of(second)];
-        if *acts == Acts::WhileWhole(number) {
+        if *acts == ContactActivity::WhileWhole(number) {
             bodies = (first, second);
             held = pair.held(step, motion)?;
-        } else if *acts == Acts::OnceBroken(number) {
+        } else if *acts == ContactActivity::OnceBroken(number) {
             pressed += pair.pressed(step, motion)?;
         }
     }
     // The energy of a spring goes with the square of its overlap, and faster where it hardens.
     let part = if pressed > held.stored { (held.stored / pressed).sqrt() } else { 1.0 };
     for (pair, acts) in touching.iter_mut().zip(acts) {
-        if *acts == Acts::OnceBroken(number) {
+        if *acts == ContactActivity::OnceBroken(number) {
             pair.begin(part);
         }
     }

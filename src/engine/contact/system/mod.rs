@@ -9,5 +9,5 @@ mod beside_held;
 mod contacts;
 
 pub(super) use contacts::{Planned, add};
-pub(super) use fragile::{Acts, Fragile};
+pub(super) use fragile::{ContactActivity, FailingSkins};
 pub(super) use touching::Touching;

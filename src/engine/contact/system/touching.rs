@@ -5,7 +5,7 @@ use crate::contact::bodies::{MemberParticles, MotionBounds, NodeTurn};
 use crate::contact::particles::ParticleContact;
 use crate::contact::response::{ContactEnergy, Histories, History, PairKey};
 use crate::contact::skins::{SkinOnTool, SkinPair};
-use crate::contact::tools::{SurfaceContact, Together};
+use crate::contact::tools::{CoupledResponse, SurfaceContact};
 use crate::schedule::{Step, StepError};
 use crate::skins::{Last, Patch};
 use crate::world::BodyId;
@@ -43,7 +43,7 @@ impl Touching {
     }
 
     /// Response of two rigid bodies to its springs, as the other contact of the pair needs it.
-    pub fn beside_the_other(&self) -> Option<Together> {
+    pub fn beside_the_other(&self) -> Option<CoupledResponse> {
         if let Self::Surface(contact) = self { Some(contact.together?.turned_around()) } else { None }
     }
 
@@ -53,7 +53,7 @@ impl Touching {
         &mut self,
         step: &mut Step<'_>,
         motion: [MotionBounds; 2],
-        beside: Option<Together>,
+        beside: Option<CoupledResponse>,
     ) -> Result<ContactEnergy, StepError> {
         match self {
             Self::Particles(contact) => contact.run(step, motion),

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use super::{angular_momentum, momentum, simulation};
-use crate::contact::bodies::shape::{Nearness, ParticleShape, of_pair, on_surface, squared_stretch};
+use crate::contact::bodies::shape::{ParticleShape, Proximity, of_pair, on_surface, squared_stretch};
 use crate::simulation::Simulation;
 use crate::world::{BodyId, DeformationGradient};
 
@@ -69,7 +69,7 @@ fn a_particle_that_turns_stays_a_sphere_and_a_pressed_one_reaches_as_far_as_its_
     let x = DVec3::new(0.9, 0.2, -0.4);
     let sphere = |radius: f64| ParticleShape { radius, gradient: None };
     let (turned, plain) = (of_pair(x, ellipsoid(0.6, turn), other), of_pair(x, sphere(0.6), sphere(0.7)));
-    let near = |near: &Nearness| near.scale * near.normal;
+    let near = |near: &Proximity| near.scale * near.normal;
     assert!(
         (turned.overlap - (1.3 - x.length())).abs() < 1e-12 && (turned.overlap - plain.overlap).abs() < 1e-12
     );

@@ -124,7 +124,7 @@ fn a_roller_that_is_turned_drives_what_lies_on_it_and_its_work_is_booked() {
                 (name: "plank", material: "stone", shape: Box(min: (-0.5, 0), max: (0.5, 0.05)), spacing: 0.025,
                  formulation: Rigid(rotation: Held)),
             ],
-            conditions: [Fix(on: Select(body: "roller")), Turn(on: Select(body: "roller"), rate: "-2*smoothstep(t/0.05)")],
+            conditions: [Fix(on: Select(body: "roller")), RotationRate(on: Select(body: "roller"), rate: "-2*smoothstep(t/0.05)")],
             contacts: [Contact(between: ("roller", "plank"), law: Penalty(stiffness: 1e6), friction: 0.5, restitution: 0.3)],
             time: (end: 0.5))"#,
     );

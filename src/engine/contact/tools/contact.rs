@@ -4,7 +4,7 @@
 use super::nearby::Nearby;
 use super::on_surface::{NearNodes, NodeTouch, OnSurface};
 use super::reaction::{NodePush, push};
-use super::together::Together;
+use super::together::CoupledResponse;
 use crate::contact::active::{ActiveContacts, ContactEnd, ContactNodes, NodeLoad};
 use crate::contact::bodies::{ContactSides, MemberParticles, MotionBounds};
 use crate::contact::response::time_step::{self, Touches};
@@ -14,7 +14,7 @@ use crate::rigid::RigidBodies;
 use crate::schedule::{Step, StepError};
 use crate::symmetry::Map;
 
-/// Layers of particles of a side for which there is room from the start.
+/// Layers of particles of a side with memory from the start.
 const LAYERS: usize = 3;
 
 /// Contact of the nodes of one body with the surface of another.
@@ -30,7 +30,7 @@ pub(in crate::contact) struct SurfaceContact {
     /// Data of the nodes near the surface for the time step.
     near: NearNodes,
     /// Forces of its springs on the rigid bodies, where dashpots need them.
-    pub together: Option<Together>,
+    pub together: Option<CoupledResponse>,
 }
 
 /// Responses of the nodes in contact in a step.
@@ -49,11 +49,11 @@ impl SurfaceContact {
     pub fn new(interaction: Interaction, sides: ContactSides, gravity: f64) -> Self {
         let particles = sides.nodes.particles();
         let count = particles.map_or(0, |particles| particles.radius.len());
-        let nearby = Nearby::new(count, particles.map_or(0.0, MemberParticles::largest));
-        let room = particles.map_or(0, |particles| LAYERS * particles.on_a_side);
+        let nearby = Nearby::new(count, particles.map_or(0.0, MemberParticles::max_radius));
+        let capacity = particles.map_or(0, |particles| LAYERS * particles.on_a_side);
         let (mut contacts, mut contact_nodes) = (ActiveContacts::default(), ContactNodes::new(count));
-        contacts.reserve(room);
-        contact_nodes.reserve(room);
+        contacts.reserve(capacity);
+        contact_nodes.reserve(capacity);
         let near = NearNodes::default();
         Self { interaction, gravity, nearby, sides, contacts, contact_nodes, near, together: None }
     }
@@ -79,7 +79,7 @@ impl SurfaceContact {
                 });
             (near, on.act_together(contacts.met()))
         })?;
-        if let Some(Together { on_node, on_tool }) = &self.together {
+        if let Some(CoupledResponse { on_node, on_tool }) = &self.together {
             let both = [(self.sides.first, on_node), (self.sides.second, on_tool)];
             for (id, springs) in both {
                 let body = bodies.iter_mut().find(|body| body.id == id);
@@ -104,7 +104,7 @@ impl SurfaceContact {
         &mut self,
         step: &Step<'_>,
         speed: f64,
-        beside: Option<Together>,
+        beside: Option<CoupledResponse>,
     ) -> Result<ToolResponses, StepError> {
         let (bodies, dt) = (step.resources.get::<RigidBodies>(), step.clock.dt);
         let Self { interaction, sides, contacts, gravity, near, together, .. } = self;
@@ -128,7 +128,7 @@ impl SurfaceContact {
         &mut self,
         step: &mut Step<'_>,
         motion: [MotionBounds; 2],
-        beside: Option<Together>,
+        beside: Option<CoupledResponse>,
     ) -> Result<ContactEnergy, StepError> {
         let speed = MotionBounds::approach(motion, &Map::IDENTITY);
         let ToolResponses { energies, expected, nodes, gap } = self.respond(step, speed, beside)?;
@@ -152,7 +152,7 @@ impl SurfaceContact {
         let pair = [sides.first, sides.second];
         match of_particles {
             Some(particles) if expected == 0.0 => {
-                let reach = 2.0 * near.least.0.min(particles.least());
+                let reach = 2.0 * near.distance.0.min(particles.min_radius());
                 let touches = Touches { squared, stored: energies.stored, speed, reach };
                 time_step::propose(step, pair, &touches)?;
             }

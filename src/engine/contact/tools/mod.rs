@@ -13,4 +13,4 @@ mod on_surface;
 mod contact;
 
 pub(super) use contact::SurfaceContact;
-pub(super) use together::Together;
+pub(super) use together::CoupledResponse;

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::contact::active::{Filter, Least};
+use crate::contact::active::{Filter, MinimumLength};
 use crate::contact::bodies::{ContactSides, NodeView};
 use crate::contact::response::PairKey;
 use crate::rigid::RigidBody;
@@ -17,7 +17,7 @@ pub(in crate::contact) const NEAR: f64 = 0.5;
 pub(super) struct Nearby {
     /// Nodes that may touch, ascending, with zero for the surface.
     candidates: Vec<PairKey>,
-    filter: Filter<PairKey, Least>,
+    filter: Filter<PairKey, MinimumLength>,
     /// How far both bodies may move together until there are others, m, and how far they have.
     budget: f64,
     travelled: f64,
@@ -63,19 +63,20 @@ impl Nearby {
     fn find(&mut self, sides: &ContactSides, nodes: &NodeView<'_>, tool: &RigidBody) -> f64 {
         let bounds = tool.surface.bounds();
         let largest_stretch = self.stretch;
-        let budget = self.filter.select(nodes.len(), &mut self.candidates, &|i, budget: &mut Least| {
-            let x = tool.reference(sides.near(nodes.position(i), tool));
-            let size = nodes.size(i);
-            let (reach, skin, near) = (largest_stretch * nodes.radius(i), SKIN * size, NEAR * size);
-            let gap = (bounds.min - x).max(x - bounds.max).max(DVec3::ZERO).length() - reach;
-            if gap < skin {
-                budget.add_length(skin - near);
-                (tool.surface.closest(x).signed_distance - reach < skin).then_some((i as u32, 0))
-            } else {
-                budget.add_length(gap - near);
-                None
-            }
-        });
+        let budget =
+            self.filter.select(nodes.len(), &mut self.candidates, &|i, budget: &mut MinimumLength| {
+                let x = tool.reference(sides.near(nodes.position(i), tool));
+                let size = nodes.size(i);
+                let (reach, skin, near) = (largest_stretch * nodes.radius(i), SKIN * size, NEAR * size);
+                let gap = (bounds.min - x).max(x - bounds.max).max(DVec3::ZERO).length() - reach;
+                if gap < skin {
+                    budget.add_length(skin - near);
+                    (tool.surface.closest(x).signed_distance - reach < skin).then_some((i as u32, 0))
+                } else {
+                    budget.add_length(gap - near);
+                    None
+                }
+            });
         budget.0
     }
 }

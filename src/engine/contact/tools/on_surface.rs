@@ -5,9 +5,9 @@ use glam::DVec3;
 use super::face_share::FaceShare;
 use super::nearby::NEAR;
 use super::reaction::NodePush;
-use super::together::{Spot, Together};
-use crate::contact::active::Least;
-use crate::contact::bodies::{ContactSides, Nearness, NodeMotion, NodeView};
+use super::together::{ContactSite, CoupledResponse};
+use crate::contact::active::MinimumLength;
+use crate::contact::bodies::{ContactSides, NodeMotion, NodeView, Proximity};
 use crate::contact::laws::Touch;
 use crate::contact::response::time_step::NormalMotion;
 use crate::contact::response::{ContactEnergy, ContactState, History, Interaction, Losses, PairKey};
@@ -23,7 +23,7 @@ pub(in crate::contact) struct NodeTouch {
     shift: DVec3,
     /// Nearest point of the surface, m.
     point: DVec3,
-    near: Nearness,
+    near: Proximity,
     share: FaceShare,
 }
 
@@ -37,8 +37,8 @@ impl NodeTouch {
 /// Data of the nodes near the surface for the time step.
 #[derive(Clone, Copy, Default)]
 pub(in crate::contact) struct NearNodes {
-    /// Least way to the centre of a particle near the surface that just touches, m.
-    pub least: Least,
+    /// Minimum distance of the surface and the centre of a particle that just touches it, m.
+    pub distance: MinimumLength,
     /// The first particle near the surface that nothing moves but conditions.
     pub held: Option<usize>,
     /// How many nodes near it have no mass of their own: points of a rigid body, and such particles.
@@ -49,7 +49,7 @@ pub(in crate::contact) struct NearNodes {
 
 impl BlockSum for NearNodes {
     fn add(&mut self, next: &Self) {
-        self.least.add(&next.least);
+        self.distance.add(&next.distance);
         self.held = self.held.or(next.held);
         self.massless += next.massless;
         self.landing.add(&next.landing);
@@ -66,7 +66,7 @@ pub(super) struct OnSurface<'a> {
     pub dt: f64,
     /// Forces of the contacts of the step on the rigid bodies, those between the two and all of them, if
     /// dashpots need them.
-    pub together: &'a [Together],
+    pub together: &'a [CoupledResponse],
 }
 
 impl OnSurface<'_> {
@@ -91,7 +91,12 @@ impl OnSurface<'_> {
         let held = nodes.is_held(i).then_some(i);
         let massless = usize::from(held.is_some() || matches!(nodes, NodeView::Rigid(_)));
         let landing = self.landing(i, held.is_some(), [nearest.point, own_place - center], &near);
-        near_nodes.add(&NearNodes { least: Least(nodes.radius(i) / near.scale), held, massless, landing });
+        near_nodes.add(&NearNodes {
+            distance: MinimumLength(nodes.radius(i) / near.scale),
+            held,
+            massless,
+            landing,
+        });
         let touches = near.overlap > 0.0 && nodes.reaches(i, center, nearest.normal, tool);
         // Where the body of the node has it, a period away from the image that touches.
         touches.then(|| {
@@ -107,7 +112,7 @@ impl OnSurface<'_> {
     /// How a node that nothing moves but the body that it is a point of, or conditions, moves against the
     /// surface, of which a point of the reference configuration is nearest to it; `shift` is the way to the
     /// image of the node.
-    fn landing(&self, i: usize, held: bool, [point, shift]: [DVec3; 2], near: &Nearness) -> NormalMotion {
+    fn landing(&self, i: usize, held: bool, [point, shift]: [DVec3; 2], near: &Proximity) -> NormalMotion {
         let Self { nodes, tool, dt, .. } = self;
         if matches!(nodes, NodeView::Particles(_)) && !held {
             return NormalMotion::UNKNOWN;
@@ -175,22 +180,22 @@ impl OnSurface<'_> {
     }
 
     /// Forces of all contacts of the step on rigid bodies, where dashpots need them.
-    pub fn act_together(&self, met: &[(PairKey, NodeTouch)]) -> Option<Together> {
+    pub fn act_together(&self, met: &[(PairKey, NodeTouch)]) -> Option<CoupledResponse> {
         let Self { interaction, nodes, tool, .. } = self;
         let shares_a_mass = matches!(nodes, NodeView::Rigid(_)) || !tool.is_driven();
         (interaction.damping_ratio > 0.0 && shares_a_mass).then(|| {
             let node = |k: usize| met[k].0.0 as usize;
-            let of = |k: usize| Together::of(&self.spot(node(k), &met[k].1), nodes, tool);
+            let of = |k: usize| CoupledResponse::of(&self.spot(node(k), &met[k].1), nodes, tool);
             sum_by_row(nodes.len(), met.len(), &node, &of)
         })
     }
 
-    fn spot(&self, i: usize, touch: &NodeTouch) -> Spot {
+    fn spot(&self, i: usize, touch: &NodeTouch) -> ContactSite {
         let Self { interaction, nodes, tool, .. } = self;
         let NodeTouch { x, shift, point, near, share } = *touch;
         let place = nodes.place(i, x, near.arms[0], || tool.place(point));
         let spring = interaction.law.at(&self.touch(i, near.overlap)).along(near.scale);
-        Spot { place, shift, normal: near.normal, stiffness: share.share * spring.stiffness }
+        ContactSite { place, shift, normal: near.normal, stiffness: share.share * spring.stiffness }
     }
 
     /// Takes in the energy of a contact that has ended.

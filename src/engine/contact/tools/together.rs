@@ -24,7 +24,7 @@ use crate::rigid::{RigidBody, Wrench};
 
 /// A contact as far as the others are concerned.
 #[derive(Clone, Copy)]
-pub(super) struct Spot {
+pub(super) struct ContactSite {
     /// Where the surface is pushed, m, and from there to where the node is.
     pub place: DVec3,
     pub shift: DVec3,
@@ -35,21 +35,21 @@ pub(super) struct Spot {
 
 /// Response of two bodies to the springs of contacts for one metre, about the centres of the rigid ones.
 #[derive(Clone, Copy, Debug, Default)]
-pub(in crate::contact) struct Together {
+pub(in crate::contact) struct CoupledResponse {
     pub on_node: Wrench,
     pub on_tool: Wrench,
 }
 
-impl BlockSum for Together {
+impl BlockSum for CoupledResponse {
     fn add(&mut self, next: &Self) {
         self.on_node.add(&next.on_node);
         self.on_tool.add(&next.on_tool);
     }
 }
 
-impl Together {
+impl CoupledResponse {
     /// The response to one contact.
-    pub(super) fn of(spot: &Spot, nodes: &NodeView<'_>, tool: &RigidBody) -> Self {
+    pub(super) fn of(spot: &ContactSite, nodes: &NodeView<'_>, tool: &RigidBody) -> Self {
         let force = spot.stiffness * spot.normal;
         let mut together = Self::default();
         together.on_tool.push(spot.place - tool.state.center, -force);
@@ -77,7 +77,7 @@ impl Together {
     /// The share of a contact whose inverse mass is `alone`, 1/kg, of which `own` is that of a particle.
     pub(super) fn share(
         &self,
-        spot: &Spot,
+        spot: &ContactSite,
         nodes: &NodeView<'_>,
         tool: &RigidBody,
         alone: f64,

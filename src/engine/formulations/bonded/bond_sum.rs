@@ -41,7 +41,7 @@ impl<const D: usize> BondSum<D> {
         if let ([j], [weight]) = (last, last_weight) {
             even.add(a, &stresses[*j as usize], *weight);
         }
-        even.plus(a, &odd)
+        even.combined(a, &odd)
     }
 
     #[inline(always)]
@@ -54,11 +54,11 @@ impl<const D: usize> BondSum<D> {
     }
 
     #[inline(always)]
-    fn plus<A: FourLanes>(mut self, a: A, other: &Self) -> Self {
+    fn combined<A: FourLanes>(mut self, a: A, other: &Self) -> Self {
         for axis in 0..D {
-            self.columns[axis] = a.plus(self.columns[axis], other.columns[axis]);
+            self.columns[axis] = a.add(self.columns[axis], other.columns[axis]);
         }
-        self.traction = a.plus(self.traction, other.traction);
+        self.traction = a.add(self.traction, other.traction);
         self
     }
 }

@@ -287,7 +287,7 @@ impl Bonds {
             let own = match ellipsoids.map(|all| &all.0[i]) {
                 None => step(i, inverse.trace()),
                 // Few particles need their shortest axis.
-                Some(own) if step(i, own.trace(inverse, own.least_axis())) >= least => return least,
+                Some(own) if step(i, own.trace(inverse, own.axis_bound())) >= least => return least,
                 Some(own) => step(i, own.trace(inverse, own.shortest())),
             };
             if own.is_finite() { least.min(own) } else { least }
@@ -308,7 +308,7 @@ impl Bonds {
         self.free.push(u32::try_from(row).unwrap_or(u32::MAX));
     }
 
-    /// Shares the neighbours of other bonds, with room for weights and moments, which have to be given.
+    /// Shares the neighbours of other bonds, with capacity for weights and moments, which have to be given.
     pub(in crate::formulations) fn share_topology(&mut self, other: &Self) {
         self.offsets = Arc::clone(&other.offsets);
         self.neighbors = Arc::clone(&other.neighbors);

@@ -22,7 +22,7 @@ use crate::world::{Damage, Removed};
 
 /// State of a particle as its neighbours treat it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(in crate::formulations) enum Mark {
+pub(in crate::formulations) enum FailureState {
     /// It is intact.
     #[default]
     Intact,
@@ -73,12 +73,12 @@ impl<'a> EdgeRows<'a> {
 #[derive(Debug, Default)]
 pub(in crate::formulations) struct Cracks {
     /// Of every row; empty before anything fails.
-    pub marks: Vec<Mark>,
+    pub states: Vec<FailureState>,
     /// Ascending by row.
     pub edges: Vec<CrackEdge>,
     /// Rows at either side of a crack, ascending.
     rows: Vec<u32>,
-    /// Number of failed rows that the marks know of.
+    /// Number of failed rows that the states know of.
     failed: usize,
     has_newly_failed: bool,
 }
@@ -86,7 +86,7 @@ pub(in crate::formulations) struct Cracks {
 impl Cracks {
     /// Adds the particles that have failed since the last step. `known` holds the rows that had failed
     /// before, ascending; the others are added to it.
-    pub fn take_up(
+    pub fn update(
         &mut self,
         known: &mut Vec<u32>,
         damage: &[Damage],
@@ -105,10 +105,10 @@ impl Cracks {
         if count as usize == known.len() {
             return;
         }
-        self.marks.resize(damage.len(), Mark::Intact);
+        self.states.resize(damage.len(), FailureState::Intact);
         for row in (0..damage.len()).filter(|&row| is_failed(row)) {
-            if self.marks[row] == Mark::Intact {
-                self.marks[row] = Mark::NewlyFailed;
+            if self.states[row] == FailureState::Intact {
+                self.states[row] = FailureState::NewlyFailed;
                 self.has_newly_failed = true;
                 known.push(row as u32);
             }
@@ -118,32 +118,32 @@ impl Cracks {
         self.list(known, bonds, ghosts);
     }
 
-    /// Rebuilds the marks of the given failed rows of a phase of `len`.
+    /// Rebuilds the states of the given failed rows of a phase of `len`.
     pub fn rebuild(&mut self, failed: &[u32], len: usize, bonds: &Bonds, ghosts: &Ghosts) {
-        self.marks.clear();
-        self.marks.resize(len, Mark::Intact);
-        failed.iter().for_each(|&row| self.marks[row as usize] = Mark::Failed);
+        self.states.clear();
+        self.states.resize(len, FailureState::Intact);
+        failed.iter().for_each(|&row| self.states[row as usize] = FailureState::Failed);
         self.has_newly_failed = false;
         self.failed = failed.len();
         self.list(failed, bonds, ghosts);
     }
 
     fn list(&mut self, failed: &[u32], bonds: &Bonds, ghosts: &Ghosts) {
-        let Self { marks, edges, rows, .. } = self;
+        let Self { states, edges, rows, .. } = self;
         let neighbors = |row: u32| bonds.row(row as usize).map(|(j, _)| ghosts.source(j));
         rows.clear();
         rows.extend(failed.iter().flat_map(|&row| neighbors(row)).map(|j| j as u32));
-        rows.retain(|&row| marks[row as usize] == Mark::Intact);
+        rows.retain(|&row| states[row as usize] == FailureState::Intact);
         rows.sort_unstable();
         rows.dedup();
         edges.clear();
         edges.extend(rows.iter().map(|&row| CrackEdge {
             row,
-            is_new: neighbors(row).any(|j| marks[j] == Mark::NewlyFailed),
+            is_new: neighbors(row).any(|j| states[j] == FailureState::NewlyFailed),
             stress: DMat3::ZERO,
             stiffness: 0.0,
         }));
-        let holds = |j: usize| marks[j] == Mark::Intact;
+        let holds = |j: usize| states[j] == FailureState::Intact;
         rows.extend(failed.iter().filter(|&&row| neighbors(row).any(holds)));
         rows.sort_unstable();
     }
@@ -164,14 +164,14 @@ impl Cracks {
         }
     }
 
-    /// Ages the marks after a pass: newly failed particles become failed ones.
+    /// Ages the states after a pass: newly failed particles become failed ones.
     pub fn age_marks(&mut self) {
         if std::mem::take(&mut self.has_newly_failed) {
             self.edges.iter_mut().for_each(|edge| edge.is_new = false);
-            self.marks
+            self.states
                 .iter_mut()
-                .filter(|mark| **mark == Mark::NewlyFailed)
-                .for_each(|mark| *mark = Mark::Failed);
+                .filter(|state| **state == FailureState::NewlyFailed)
+                .for_each(|state| *state = FailureState::Failed);
         }
     }
 
@@ -199,7 +199,7 @@ impl Cracks {
         let mut force = DVec3::ZERO;
         for (j, weight) in bonds.row(row) {
             let source = ghosts.source(j);
-            let has_failed = self.marks[source] != Mark::Intact;
+            let has_failed = self.states[source] != FailureState::Intact;
             let edge = if has_failed { own } else { edge_of(source).filter(|_| own.is_none()) };
             let Some(edge) = edge else { continue };
             // The terms of an image are those of its source in the mirror: S A S.

@@ -36,7 +36,7 @@ impl<const D: usize> DisplacementMoment<D> {
         if let ([j], [weight]) = (last, last_weight) {
             even.add(a, site.displacement, &sites[*j as usize], *weight);
         }
-        let mut sums = even.plus(a, &odd);
+        let mut sums = even.combined(a, &odd);
         for axis in 0..D {
             sums.spread[axis] = a.scale_add(-site.reference.0[axis], sums.stretched, sums.spread[axis]);
         }
@@ -45,22 +45,22 @@ impl<const D: usize> DisplacementMoment<D> {
 
     #[inline(always)]
     fn add<A: FourLanes>(&mut self, a: A, displacement: Lanes4, other: &PackedParticle, weight: f32) {
-        let displacement = a.minus(other.displacement, displacement);
+        let displacement = a.sub(other.displacement, displacement);
         let weighted = a.scale(f64::from(weight) * other.reference.0[3], displacement);
         for axis in 0..D {
             self.spread[axis] = a.scale_add(other.reference.0[axis], weighted, self.spread[axis]);
         }
-        self.stretched = a.plus(self.stretched, weighted);
-        self.square = a.times_add(displacement, weighted, self.square);
+        self.stretched = a.add(self.stretched, weighted);
+        self.square = a.mul_add(displacement, weighted, self.square);
     }
 
     #[inline(always)]
-    fn plus<A: FourLanes>(mut self, a: A, other: &Self) -> Self {
+    fn combined<A: FourLanes>(mut self, a: A, other: &Self) -> Self {
         for axis in 0..D {
-            self.spread[axis] = a.plus(self.spread[axis], other.spread[axis]);
+            self.spread[axis] = a.add(self.spread[axis], other.spread[axis]);
         }
-        self.stretched = a.plus(self.stretched, other.stretched);
-        self.square = a.plus(self.square, other.square);
+        self.stretched = a.add(self.stretched, other.stretched);
+        self.square = a.add(self.square, other.square);
         self
     }
 }

@@ -15,16 +15,16 @@ use crate::symmetry::Ghosts;
 const LONGEST: f64 = 20.0;
 /// Share of a stretch that it follows in any case, beyond its root: a support of 2.4 spacings then reaches
 /// over 1.6 of those that the stretch makes of them.
-const LEAST: f64 = 2.0 / 3.0;
+const MIN_SHARE: f64 = 2.0 / 3.0;
 /// Trace of F F^T up to which no stretch is so large that more than its root counts.
-const WIDE: f64 = 1.0 / (LEAST * LEAST * LEAST * LEAST);
+const WIDE: f64 = 1.0 / (MIN_SHARE * MIN_SHARE * MIN_SHARE * MIN_SHARE);
 /// Determinant of F F^T down to which, with such a trace, no stretch is below 1/20, far above the limit.
 const FLAT: f64 = 0.02;
 
 /// Safety margin of a bound of an eigenvalue against rounding.
 const ROUNDING: f64 = 1e-6;
-/// Least bound of the eigenvalues of G, over their mean, from which on it is taken for the smallest: that is
-/// then no more than half as far from the mean.
+/// Minimum bound of the eigenvalues of G, over their mean, from which on it is taken for the smallest: that
+/// is then no more than half as far from the mean.
 const ROUND: f64 = 0.9;
 
 /// The ellipsoid r . G r = 1 of a particle.
@@ -53,7 +53,7 @@ impl Ellipsoid {
         if squares.trace() <= WIDE && squares.determinant() >= FLAT {
             return squares.inverse_root();
         }
-        let axis = |stretch: f64| stretch.sqrt().max(LEAST * stretch);
+        let axis = |stretch: f64| stretch.sqrt().max(MIN_SHARE * stretch);
         Eigen::new(&squares).map(|square| axis(square.sqrt()).clamp(LONGEST.recip(), LONGEST).powi(-2))
     }
 
@@ -81,7 +81,7 @@ impl Ellipsoid {
     }
 
     /// A bound below the shortest half axis.
-    pub fn least_axis(&self) -> f64 {
+    pub fn axis_bound(&self) -> f64 {
         let deviator = self.tensor.deviator();
         let most = self.tensor.trace() / 3.0 + 2.0 * (deviator.double_dot(&deviator) / 6.0).sqrt();
         ((1.0 + ROUNDING) * most).sqrt().recip()
@@ -157,7 +157,7 @@ mod tests {
             let longest = stretch.max(1.0 / stretch).sqrt();
             assert!(found > longest * (1.0 - 1e-12) && found < 1.03 * longest, "{found} for {longest}");
             let shortest = stretch.min(1.0 / stretch).sqrt();
-            let least = Ellipsoid::new(Ellipsoid::following(&f)).least_axis();
+            let least = Ellipsoid::new(Ellipsoid::following(&f)).axis_bound();
             assert!(least <= shortest && least > 0.9 * shortest, "{least} for {shortest}");
         }
         let r = DVec3::new(0.3, -1.0, 2.0);

@@ -50,9 +50,9 @@ impl AffineFrame {
     pub fn rest_in<A: FourLanes>(&self, a: A, site: &PackedParticle) -> Lanes4 {
         let [x, y, z] = self.columns();
         let [along_x, along_y, along_z, _] = site.reference.0;
-        let of_two = a.plus(a.scale(along_x, x), a.scale(along_y, y));
-        let affine = a.plus(of_two, a.scale(along_z, z));
-        a.minus(a.minus(site.displacement, Lanes4::new(self.displacement, 0.0)), affine)
+        let of_two = a.add(a.scale(along_x, x), a.scale(along_y, y));
+        let affine = a.add(of_two, a.scale(along_z, z));
+        a.sub(a.sub(site.displacement, Lanes4::new(self.displacement, 0.0)), affine)
     }
 
     /// Takes the stress of a particle into the frame, and completes it by its affine traction.

@@ -28,7 +28,7 @@ pub(super) use balance::{HeldBody, balanced_shares};
 pub(super) use body_set_up::{BodySetUp, held_of};
 pub(super) use bonds::BodyBonds;
 pub use bonds::{BondError, Bonds};
-pub(super) use cracks::{CrackEdge, Cracks, EdgeRows, Mark};
+pub(super) use cracks::{CrackEdge, Cracks, EdgeRows, FailureState};
 pub(super) use ellipsoids::{Ellipsoid, Ellipsoids};
 pub(super) use frame::{AffineFrame, CompleteStress, bodies_of, fill_ghosts, frame_of};
 pub(super) use gather::{AddIdentity, CorrectStress, Gather, Written};

@@ -179,26 +179,26 @@ impl BodyPairs<'_> {
         let list =
             if site.is_present() { bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize } else { 0..0 };
         let (neighbors, weights) = (&bonds.neighbors[list.clone()], &bonds.weights[list]);
-        let mut room = batch.add_row(site.reference.0[3], neighbors.len());
+        let mut slots = batch.add_row(site.reference.0[3], neighbors.len());
         let (fours, rest) = neighbors.as_chunks();
         let (weights, rest_weights) = weights.as_chunks();
         for n in 0..fours.len() {
             let four = FourBonds { neighbors: fours[n], weights: weights[n] };
-            self.put::<A, GHOSTS>(a, &own, four, n, &mut room);
+            self.put::<A, GHOSTS>(a, &own, four, n, &mut slots);
         }
         if !rest.is_empty() {
             let (mut four, mut weight) = ([i as u32; 4], [0.0; 4]);
             four[..rest.len()].copy_from_slice(rest);
             weight[..rest.len()].copy_from_slice(rest_weights);
             let four = FourBonds { neighbors: four, weights: weight };
-            self.put::<A, GHOSTS>(a, &own, four, fours.len(), &mut room);
+            self.put::<A, GHOSTS>(a, &own, four, fours.len(), &mut slots);
         }
         if let Some(kernel) = self.kernel {
-            put_kernel(kernel, self.uniform, room);
+            put_kernel(kernel, self.uniform, slots);
         }
     }
 
-    /// Puts four neighbours into the room, all but kernel values.
+    /// Puts four neighbours into the slots, all but kernel values.
     #[inline(always)]
     fn put<A: FourLanes, const GHOSTS: bool>(
         &self,
@@ -206,7 +206,7 @@ impl BodyPairs<'_> {
         own: &OwnSite<A>,
         four: FourBonds,
         n: usize,
-        room: &mut RowSlots<'_>,
+        slots: &mut RowSlots<'_>,
     ) {
         let FourBonds { neighbors: four, weights: weight } = four;
         let Self { ghosts, sites, support, uniform, velocity, .. } = *self;
@@ -225,37 +225,37 @@ impl BodyPairs<'_> {
         let volume_j = a.where_below(Lanes4::ZERO, weight, volume);
         if GHOSTS {
             for lane in 0..4 {
-                room.mirrors[n][lane] = ghosts.mirror(rows[lane]).unwrap_or(DVec3::ONE);
+                slots.mirrors[n][lane] = ghosts.mirror(rows[lane]).unwrap_or(DVec3::ONE);
                 rows[lane] = ghosts.source(rows[lane]);
             }
         }
         let [j, k, l, m] = rows;
-        room.rows[n] = [j as u32, k as u32, l as u32, m as u32];
-        room.reference[n] = FourVectors::squared(a, then);
-        let pairs = &mut room.pairs[n];
+        slots.rows[n] = [j as u32, k as u32, l as u32, m as u32];
+        slots.reference[n] = FourVectors::squared(a, then);
+        let pairs = &mut slots.pairs[n];
         pairs.current = FourVectors::squared(a, now);
         pairs.volume_j = volume_j;
         pairs.weight = a.where_below(Lanes4::ZERO, volume_j, weight);
         if let Some(v) = velocity {
             let mut of = [v[j].0, v[k].0, v[l].0, v[m].0];
             if GHOSTS {
-                let signs = &room.mirrors[n];
+                let signs = &slots.mirrors[n];
                 of = [of[0] * signs[0], of[1] * signs[1], of[2] * signs[2], of[3] * signs[3]];
             }
             pairs.velocity = components(Vector::from_rows(a, of) - own.velocity);
         }
         if uniform.is_none() {
             let other = Lanes4([support[j].0, support[k].0, support[l].0, support[m].0]);
-            room.supports[n] = a.scale(0.5, a.plus(Lanes4::splat(own.support), other));
+            slots.supports[n] = a.scale(0.5, a.add(Lanes4::splat(own.support), other));
         }
     }
 }
 
 /// Puts kernel values of the reference lengths into a row.
-fn put_kernel(kernel: &Kernel, uniform: Option<f64>, room: RowSlots<'_>) {
-    for (k, (pairs, reference)) in room.pairs.iter_mut().zip(room.reference).enumerate() {
+fn put_kernel(kernel: &Kernel, uniform: Option<f64>, slots: RowSlots<'_>) {
+    for (k, (pairs, reference)) in slots.pairs.iter_mut().zip(slots.reference).enumerate() {
         for lane in 0..4 {
-            let support = uniform.unwrap_or_else(|| room.supports[k].0[lane]);
+            let support = uniform.unwrap_or_else(|| slots.supports[k].0[lane]);
             let h = kernel.smoothing_length(support);
             let value = kernel.w(reference.length.0[lane].sqrt(), h);
             pairs.kernel.0[lane] = if pairs.volume_j.0[lane] > 0.0 { value } else { 0.0 };

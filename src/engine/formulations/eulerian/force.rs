@@ -68,10 +68,10 @@ impl PlaneOrSpace for EulerianForceRows<'_> {
             for n in 0..neighbors.len() {
                 let j = neighbors[n] as usize;
                 let other = &stresses[j];
-                let arm = a.minus(points[j].place, place);
+                let arm = a.sub(points[j].place, place);
                 let mut traction = Lanes4::ZERO;
                 for axis in 0..D {
-                    let column = a.plus(own.columns[axis], other.columns[axis]);
+                    let column = a.add(own.columns[axis], other.columns[axis]);
                     traction = a.scale_add(arm.0[axis], column, traction);
                 }
                 sum = a.scale_add(weights[n] * other.traction.0[3], traction, sum);

@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::DVec3;
 
 use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic};
-use crate::parallel::{BlockSum, Largest, sum_over_blocks};
+use crate::parallel::{BlockSum, Maximum, sum_over_blocks};
 use crate::symmetry::{Ghosts, Repeat};
 use crate::world::BodyId;
 
@@ -122,8 +122,8 @@ impl EulerianBody {
             });
             0.5 * (all.0 + all.1)
         };
-        let farthest: Largest = sum_over_blocks((before, now), &|_, (before, now): Rows<'_>| {
-            Largest::of(before.iter().zip(now).map(|(before, now)| (*now - *before - along).length_squared()))
+        let farthest: Maximum = sum_over_blocks((before, now), &|_, (before, now): Rows<'_>| {
+            Maximum::of(before.iter().zip(now).map(|(before, now)| (*now - *before - along).length_squared()))
         });
         let limit = 0.5 * SKIN * self.support;
         // What is not a number is far, too.

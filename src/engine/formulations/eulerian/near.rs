@@ -8,10 +8,10 @@ use crate::kernels::{Kernel, KernelProfile, KernelVisitor, ProfiledKernel, Scale
 use crate::linalg::Sym3;
 use crate::parallel::{FourLanes, Lanes4, PlaneOrSpace, Split, run_hot_in};
 
-/// Least determinant of M_i in units of `(tr M_i / d)^d`. Below it the neighbours are so nearly on a line, or
-/// in space in a plane, that a gradient across it is noise: what is left of a body that has separated fully.
-/// Spacings along two axes may differ by more than two, corners of bodies have above 0.8.
-pub(super) const LEAST_SPREAD: f64 = 0.02;
+/// Minimum determinant of M_i in units of `(tr M_i / d)^d`. Below it the neighbours are so nearly on a line,
+/// or in space in a plane, that a gradient across it is noise: what is left of a body that has separated
+/// fully. Spacings along two axes may differ by more than two, corners of bodies have above 0.8.
+pub(super) const MIN_SPREAD: f64 = 0.02;
 
 /// Results of the pass for every row.
 #[derive(Clone, Copy, Debug, Default)]
@@ -83,7 +83,7 @@ impl Split for NeighborRows<'_> {
 }
 
 /// Computes the pairs of the lists of a block.
-pub(super) struct LookAtBlock<'a, 'r> {
+pub(super) struct ComputePairs<'a, 'r> {
     pub kernel: Kernel,
     /// Support radius, m.
     pub support: f64,
@@ -95,24 +95,24 @@ pub(super) struct LookAtBlock<'a, 'r> {
     pub rows: &'r mut NeighborRows<'a>,
 }
 
-impl KernelVisitor for LookAtBlock<'_, '_> {
+impl KernelVisitor for ComputePairs<'_, '_> {
     type Output = ();
 
     fn visit<K: KernelProfile>(self, kernel: ProfiledKernel<K>) {
         let kernel = kernel.scaled(self.kernel.smoothing_length(self.support));
-        run_hot_in(self.plane, LookLoop { kernel, look: self });
+        run_hot_in(self.plane, PairLoop { kernel, look: self });
     }
 }
 
-struct LookLoop<'a, 'r, K: KernelProfile> {
+struct PairLoop<'a, 'r, K: KernelProfile> {
     kernel: ScaledKernel<K>,
-    look: LookAtBlock<'a, 'r>,
+    look: ComputePairs<'a, 'r>,
 }
 
-impl<K: KernelProfile> PlaneOrSpace for LookLoop<'_, '_, K> {
+impl<K: KernelProfile> PlaneOrSpace for PairLoop<'_, '_, K> {
     #[inline(always)]
     fn run<A: FourLanes, const D: usize>(self, a: A) {
-        let Self { kernel, look: LookAtBlock { support, lists, points, first, rows, .. } } = self;
+        let Self { kernel, look: ComputePairs { support, lists, points, first, rows, .. } } = self;
         let limit = support * support;
         let itself = kernel.w(0.0);
         let begin = rows.offsets[0];
@@ -126,8 +126,8 @@ impl<K: KernelProfile> PlaneOrSpace for LookLoop<'_, '_, K> {
             let mut count = 0;
             for list in lists[list].chunks(CHUNK) {
                 let from = start + count;
-                let room = from..from + list.len();
-                let (neighbors, squares) = (&mut rows.neighbors[room.clone()], &mut rows.weights[room]);
+                let slots = from..from + list.len();
+                let (neighbors, squares) = (&mut rows.neighbors[slots.clone()], &mut rows.weights[slots]);
                 let found = Within { neighbors, squares }.find(a, list, (own, limit), points);
                 let part = from..from + found;
                 let neighbors = &rows.neighbors[part.clone()];
@@ -141,19 +141,19 @@ impl<K: KernelProfile> PlaneOrSpace for LookLoop<'_, '_, K> {
                 }
                 for n in 0..found {
                     let EulerianParticle { place: other, velocity } = points[neighbors[n] as usize];
-                    let (arm, weight) = (a.minus(other, own), other.0[3] * weights[n]);
+                    let (arm, weight) = (a.sub(other, own), other.0[3] * weights[n]);
                     let weighted = a.scale(weight, arm);
                     for axis in 0..D {
                         moment[axis] = a.scale_add(arm.0[axis], weighted, moment[axis]);
                     }
-                    first_moment = a.plus(first_moment, weighted);
+                    first_moment = a.add(first_moment, weighted);
                     weight_sum += weight;
                     filled += velocity.0[3] * values[n];
                 }
                 count += found;
             }
             let inverse_moment =
-                MomentMatrix::of_columns(&moment).inverse_above(LEAST_SPREAD).unwrap_or_default();
+                MomentMatrix::of_columns(&moment).inverse_above(MIN_SPREAD).unwrap_or_default();
             let count = count as u32;
             rows.around[k] =
                 NearbyMotion { count, inverse_moment, first_moment: first_moment.xyz(), weight_sum, filled };

@@ -76,22 +76,22 @@ impl HotLoop for FillEulerianPairs<'_> {
             }
             let part = lists.offsets[i]..lists.offsets[i] + near.around[i].count as usize;
             let neighbors = &near.neighbors[part.clone()];
-            let mut room = batch.add_row(points[i].velocity.0[3], neighbors.len());
+            let mut slots = batch.add_row(points[i].velocity.0[3], neighbors.len());
             let (fours, rest) = neighbors.as_chunks::<4>();
             for n in 0..fours.len() {
                 let four = FourNeighbors { i, neighbors: fours[n], count: 4, first: part.start + 4 * n };
-                put(a, packed, four, n, &mut room);
+                put(a, packed, four, n, &mut slots);
             }
             if !rest.is_empty() {
                 let mut four = [i as u32; 4];
                 four[..rest.len()].copy_from_slice(rest);
                 let n = fours.len();
                 let four = FourNeighbors { i, neighbors: four, count: rest.len(), first: part.start + 4 * n };
-                put(a, packed, four, n, &mut room);
+                put(a, packed, four, n, &mut slots);
             }
             if let Some(kernel) = kernel {
                 let h = kernel.smoothing_length(*support);
-                for pairs in &mut *room.pairs {
+                for pairs in &mut *slots.pairs {
                     for lane in 0..4 {
                         // Without a weight there is no neighbour.
                         let is_there = pairs.volume_j.0[lane] > 0.0;
@@ -112,9 +112,9 @@ struct FourNeighbors {
     first: usize,
 }
 
-/// Puts four neighbours into place `n` of the room.
+/// Puts four neighbours into place `n` of the slots.
 #[inline(always)]
-fn put<A: FourLanes>(a: A, packed: &EulerianRows, four: FourNeighbors, n: usize, room: &mut RowSlots<'_>) {
+fn put<A: FourLanes>(a: A, packed: &EulerianRows, four: FourNeighbors, n: usize, slots: &mut RowSlots<'_>) {
     let FourNeighbors { i, neighbors: four, count, first: at } = four;
     let EulerianRows { lists, near, points, carried, .. } = packed;
     let [j, k, l, m] = four.map(|row| row as usize);
@@ -132,16 +132,16 @@ fn put<A: FourLanes>(a: A, packed: &EulerianRows, four: FourNeighbors, n: usize,
         weight.0[lane] = near.weights[at + lane];
         volume_j.0[lane] = volume.0[lane];
     }
-    let pairs = &mut room.pairs[n];
+    let pairs = &mut slots.pairs[n];
     pairs.current = FourVectors::squared(a, now);
     pairs.velocity = components(passing);
     (pairs.weight, pairs.kernel, pairs.volume_j) = (weight, Lanes4::ZERO, volume_j);
-    room.reference[n] = FourVectors::squared(a, then);
-    room.rows[n] = four;
-    if !room.mirrors.is_empty() {
+    slots.reference[n] = FourVectors::squared(a, then);
+    slots.rows[n] = four;
+    if !slots.mirrors.is_empty() {
         for lane in 0..4 {
-            room.mirrors[n][lane] = lists.ghosts.mirror(four[lane] as usize).unwrap_or(DVec3::ONE);
-            room.rows[n][lane] = lists.ghosts.source(four[lane] as usize) as u32;
+            slots.mirrors[n][lane] = lists.ghosts.mirror(four[lane] as usize).unwrap_or(DVec3::ONE);
+            slots.rows[n][lane] = lists.ghosts.source(four[lane] as usize) as u32;
         }
     }
 }

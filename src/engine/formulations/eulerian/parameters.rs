@@ -11,7 +11,7 @@ use super::dilatation::DilatationRate;
 use super::divergence::Divergence;
 use super::force::EulerianForce;
 use super::lists::{EulerianBody, EulerianLists};
-use super::near::{EulerianNeighbors, LookAtBlock, NearbyMotion, NeighborRows};
+use super::near::{ComputePairs, EulerianNeighbors, NearbyMotion, NeighborRows};
 use super::pairs::EulerianPairs;
 use super::rates::{RATES, VelocityGradients};
 use super::rows::{EulerianKernel, EulerianRows, PointColumns};
@@ -21,10 +21,10 @@ use crate::kernels::{Kernel, KernelName};
 use crate::linalg::Sym3;
 use crate::pair::add_pair_systems;
 use crate::plugin::{BodyKind, BodyPlan, Formulation, Offer, Setup, SetupError, SimBuilder};
-use crate::removal::Leaving;
+use crate::removal::LeavingParticles;
 use crate::scene::Dimension;
 use crate::schedule::{Mode, Stage, System};
-use crate::solids::{CORRECTED_STRESS, PACKED_SOLID, SolidBodies, TakenUp, require_support};
+use crate::solids::{AppliedLosses, CORRECTED_STRESS, PACKED_SOLID, SolidBodies, require_support};
 use crate::symmetry::repeats_of;
 use crate::world::{
     BodyId, BodySet, Column, ColumnSet, DeformationGradient, Force, Mass, PhaseId, PiolaStress, Position,
@@ -88,7 +88,11 @@ impl Formulation for Eulerian {
     }
 
     fn columns(columns: &mut ColumnSet) {
-        columns.add::<SupportRadius>().add::<DeformationGradient>().add::<PiolaStress>().add::<TakenUp>();
+        columns
+            .add::<SupportRadius>()
+            .add::<DeformationGradient>()
+            .add::<PiolaStress>()
+            .add::<AppliedLosses>();
     }
 
     fn assemble(bodies: Vec<(BodyId, Self)>, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
@@ -243,7 +247,7 @@ fn set_up(
     packed.pack(&columns, 0.0, std::iter::empty());
     look_at_reference(&mut packed, setup)?;
     setup.resources.insert_solid(phase, packed);
-    setup.resources.insert_of(phase, Leaving::default());
+    setup.resources.insert_of(phase, LeavingParticles::default());
     Ok(())
 }
 
@@ -261,7 +265,7 @@ fn look_at_reference(packed: &mut EulerianRows, setup: &mut Setup<'_>) -> Result
         };
         let (kernel, support, first) = (of.kernel, body.support, body.rows.start);
         let (lists, plane) = (&lists.neighbors[..], *plane);
-        kernel.dispatch(LookAtBlock { kernel, support, lists, points, first, plane, rows: &mut rows });
+        kernel.dispatch(ComputePairs { kernel, support, lists, points, first, plane, rows: &mut rows });
         let free = rows.around.iter().filter(|around| around.inverse_moment == Sym3::ZERO).count();
         let name = &setup.world.body(body.id).name;
         if free == rows.around.len() {

@@ -7,7 +7,7 @@
 use glam::{DMat3, DVec3};
 
 use super::dilatation::{DilatationRate, gradient};
-use super::near::LEAST_SPREAD;
+use super::near::MIN_SPREAD;
 use super::particle::EulerianParticle;
 use super::rows::{EulerianRows, PointColumns};
 use super::start;
@@ -162,16 +162,16 @@ impl<K: KernelProfile> PlaneOrSpace for AdvanceLoop<'_, K> {
                 }
                 for n in 0..count {
                     let other = &points[near[n] as usize];
-                    let arm = a.minus(other.place, own.place);
+                    let arm = a.sub(other.place, own.place);
                     let weighted = a.scale(other.place.0[3] * weights[n], arm);
-                    let passing = a.minus(other.velocity, own.velocity);
+                    let passing = a.sub(other.velocity, own.velocity);
                     for axis in 0..D {
                         moment[axis] = a.scale_add(arm.0[axis], weighted, moment[axis]);
                         spread[axis] = a.scale_add(weighted.0[axis], passing, spread[axis]);
                     }
                 }
             }
-            let Some(inverse) = MomentMatrix::of_columns(&moment).inverse_above(LEAST_SPREAD) else {
+            let Some(inverse) = MomentMatrix::of_columns(&moment).inverse_above(MIN_SPREAD) else {
                 continue;
             };
             let l = fit::<A, D>(a, &spread, &inverse);

@@ -52,7 +52,7 @@ pub(super) struct PointColumns<'a> {
 }
 
 impl EulerianRows {
-    /// Brings the lists up to date, with room for all that depends on them. Positions and reference
+    /// Brings the lists up to date, with capacity for all that depends on them. Positions and reference
     /// positions, m.
     pub fn update_lists(
         &mut self,

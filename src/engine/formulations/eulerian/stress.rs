@@ -9,16 +9,16 @@ use super::control_rows::Carried;
 use super::dilatation::Dilatation;
 use super::divergence::{Divergence, corrected};
 use super::force;
-use super::near::{LookAtBlock, NearbyMotion, NeighborRows};
+use super::near::{ComputePairs, NearbyMotion, NeighborRows};
 use super::particle::EulerianParticle;
 use super::rows::{EulerianKernel, EulerianRows, PointColumns};
 use crate::linalg::Sym3;
-use crate::parallel::{Lanes4, Largest, split_by_rows, sum_over_blocks};
+use crate::parallel::{Lanes4, Maximum, split_by_rows, sum_over_blocks};
 use crate::removal::REMOVED_ENERGY;
 use crate::schedule::{Access, AccountKind, Run, Step, StepError};
 use crate::solids::{
-    BodyPass, Constitutive, CorrectedStress, Loss, SolidBlock, SolidBodies, SolidColumns, SolidPart,
-    SolidRows, SolidSum, TakenUp, count_rows,
+    AppliedLosses, BodyPass, Constitutive, CorrectedStress, Loss, SolidBlock, SolidBodies, SolidColumns,
+    SolidPart, SolidRows, SolidSum, count_rows,
 };
 use crate::world::{
     Force, Mass, MissingColumn, PhaseId, PhaseView, Position, ReferenceVolume, Removed, Velocity, World,
@@ -41,15 +41,15 @@ impl Run for Stress {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let mut packed = step.resources.solid_rows_mut::<EulerianRows>(self.phase);
         if std::mem::take(&mut self.is_restored) {
-            let taken_up = step.world.phase(self.phase).read::<TakenUp>()?;
-            self.removed = TakenUp::rows(&taken_up, Loss::Removed);
+            let applied = step.world.phase(self.phase).read::<AppliedLosses>()?;
+            self.removed = AppliedLosses::rows(&applied, Loss::Removed);
         }
         self.pack(step.world, &mut packed)?;
         self.pass(step.world, &mut packed, SolidPart::of(step))?;
         self.solids.book(step)?;
         let bodies = self.solids.iter().map(|own| own.id);
         self.dilatation.book(self.phase, &packed, bodies, step)?;
-        self.take_up_removed(step, &mut packed)?;
+        self.update_removed(step, &mut packed)?;
         artificial_stress::write(step.world, self.phase, &packed)?;
         self.find_stable_steps(&mut packed);
         let stable = std::mem::take(&mut packed.stable_step);
@@ -178,7 +178,7 @@ impl Stress {
     /// Takes out of the sums what has been removed since the last step. The pass runs twice from the same
     /// places: what the removed particles held leaves the energy balance, and what the motion up to here,
     /// with the old forces, loses by the new ones in the second kick goes with it.
-    fn take_up_removed(&mut self, step: &mut Step<'_>, packed: &mut EulerianRows) -> Result<(), StepError> {
+    fn update_removed(&mut self, step: &mut Step<'_>, packed: &mut EulerianRows) -> Result<(), StepError> {
         let view = step.world.phase(self.phase);
         let removed = view.read_near::<Removed>()?;
         if count_rows(&removed, |row| *row != Removed::NO) == self.removed.len() {
@@ -188,7 +188,7 @@ impl Stress {
         let before = self.forces(step.world, packed)?;
         self.removed.clear();
         self.removed.extend((0..removed.len() as u32).filter(|&row| removed[row as usize] != Removed::NO));
-        TakenUp::write(&mut view.write::<TakenUp>()?, Loss::Removed, &self.removed);
+        AppliedLosses::write(&mut view.write::<AppliedLosses>()?, Loss::Removed, &self.removed);
         self.pack(step.world, packed)?;
         // States of laws have advanced by this step already.
         self.pass(step.world, packed, SolidPart::REPEATED)?;
@@ -214,14 +214,14 @@ impl Stress {
         for (own, body) in self.solids.iter().zip(&lists.bodies) {
             let rows = (&near.around[body.rows.clone()], &control.stiffness[body.rows.clone()]);
             type Rows<'a> = (&'a [NearbyMotion], &'a [f64]);
-            let fastest: Largest = sum_over_blocks(rows, &|_, (around, stiffness): Rows<'_>| {
+            let fastest: Maximum = sum_over_blocks(rows, &|_, (around, stiffness): Rows<'_>| {
                 let step = |(of, stiffness): (&NearbyMotion, &f64)| {
                     let inverse = of.inverse_moment.trace() / axes;
                     1.0 / own.estimate.stable_step_with_pairs(of.weight_sum, inverse, *stiffness)
                 };
                 let with_stress =
                     around.iter().zip(stiffness).filter(|(of, _)| of.inverse_moment != Sym3::ZERO);
-                Largest::of(with_stress.map(step))
+                Maximum::of(with_stress.map(step))
             });
             stable_step.push(1.0 / fastest.0);
         }
@@ -270,7 +270,7 @@ impl StressPass<'_> {
             *self;
         let (n, first) = (rows.deformation.len(), block.first);
         let OwnRows { mut near, deformation, carried, stresses } = own;
-        kernel.dispatch(LookAtBlock { kernel, support, lists, points, first, plane, rows: &mut near });
+        kernel.dispatch(ComputePairs { kernel, support, lists, points, first, plane, rows: &mut near });
         deformation.copy_from_slice(rows.deformation);
         for (k, f) in deformation.iter().enumerate() {
             block.gradient[k] = *f - DMat3::IDENTITY;

@@ -69,11 +69,11 @@ impl Center {
         let [j, k, l, m] = [four[0] as usize, four[1] as usize, four[2] as usize, four[3] as usize];
         let [x, y, z, volume] =
             a.transpose([points[j].place, points[k].place, points[l].place, points[m].place]);
-        let (x, y) = (a.minus(x, self.place[0]), a.minus(y, self.place[1]));
-        let mut square = a.times_add(y, y, a.times(x, x));
+        let (x, y) = (a.sub(x, self.place[0]), a.sub(y, self.place[1]));
+        let mut square = a.mul_add(y, y, a.mul(x, x));
         if A::AXES == 3 {
-            let z = a.minus(z, self.place[2]);
-            square = a.times_add(z, z, square);
+            let z = a.sub(z, self.place[2]);
+            square = a.mul_add(z, z, square);
         }
         let is_there = a.below(Lanes4::ZERO, square) & a.below(Lanes4::ZERO, volume);
         (square, a.below(square, self.limit) & is_there)

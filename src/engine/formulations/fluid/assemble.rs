@@ -71,9 +71,9 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     let short = systems::short_phases(&bodies.groups, sim);
     bodies.groups.iter_mut().for_each(|group| group.short = short.contains(&group.phase));
     sim.sub_cycle(short);
-    let (repulsion, reach) = Repulsion::new(&bodies.groups, common.kernel.smoothing_length(), sim);
+    let (repulsion, repulsion_range) = Repulsion::new(&bodies.groups, common.kernel.smoothing_length(), sim);
     let groups = bodies.groups.clone();
-    let mut cloud = cloud(bodies, common, reach, sim)?;
+    let mut cloud = cloud(bodies, common, repulsion_range, sim)?;
     cloud.decide_what_others_know(WallShapes::are_asked_for(&groups, sim));
     let spin = cloud.viscosities.spin;
     advice::unfelt_walls(&walls, spin, sim);
@@ -181,12 +181,12 @@ impl Bodies {
     }
 }
 
-/// The cloud of the particles of all bodies, before the first step; `reach` is that of the repulsion of
-/// boundaries, m.
+/// The cloud of the particles of all bodies, before the first step; `repulsion_range` is that of the
+/// repulsion of boundaries, m.
 fn cloud(
     bodies: Bodies,
     common: Common,
-    reach: f64,
+    repulsion_range: f64,
     sim: &mut SimBuilder<'_>,
 ) -> Result<FlowCloud, SetupError> {
     let Bodies { groups, fluid, thin } = bodies;
@@ -217,7 +217,7 @@ fn cloud(
         compression: Vec::new(),
         boundary_compression: Vec::new(),
         is_close: Vec::new(),
-        reach,
+        repulsion_range,
         repelled: Vec::new(),
         edges: BoundaryEdges::default(),
         ends: Vec::new(),

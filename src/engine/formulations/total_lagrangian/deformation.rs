@@ -8,8 +8,8 @@
 use glam::DVec3;
 
 use crate::formulations::bonded::{
-    AddIdentity, AffineFrame, Bonds, CompleteStress, CorrectStress, EdgeRows, Gather, HessianBlock, Mark,
-    PackedParticle, Written,
+    AddIdentity, AffineFrame, Bonds, CompleteStress, CorrectStress, EdgeRows, FailureState, Gather,
+    HessianBlock, PackedParticle, Written,
 };
 use crate::linalg::Sym3;
 use crate::parallel::{BLOCK, Split, run_hot, run_hot_in};
@@ -56,7 +56,7 @@ pub(super) struct DeformationPass<'a> {
     pub sites: &'a [PackedParticle],
     pub frame: &'a AffineFrame,
     /// Which rows have failed; looked at where there are edges.
-    pub marks: &'a [Mark],
+    pub states: &'a [FailureState],
     pub velocity: &'a [Velocity],
     /// Plane strain.
     pub plane: bool,

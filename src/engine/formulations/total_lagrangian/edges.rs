@@ -10,7 +10,7 @@ use glam::{DMat3, DVec3};
 
 use super::deformation::DeformationPass;
 use crate::correction::MomentMatrix;
-use crate::formulations::bonded::{CrackEdge, EdgeRows, Mark};
+use crate::formulations::bonded::{CrackEdge, EdgeRows, FailureState};
 use crate::linalg::dyad;
 use crate::solids::{Constitutive, FoldedEnergy, FoldedRows, FoldedTerm, SolidSum};
 
@@ -73,8 +73,8 @@ impl DeformationPass<'_> {
     ) {
         (edge.stress, edge.stiffness) = (DMat3::ZERO, 0.0);
         let i = edge.row as usize;
-        let held = |mark: Mark| mark != Mark::Failed;
-        let holds = |mark: Mark| mark == Mark::Intact;
+        let held = |state: FailureState| state != FailureState::Failed;
+        let holds = |state: FailureState| state == FailureState::Intact;
         let of_all = row.displacement_gradient[0];
         let old = edge.is_new.then(|| self.fit(i, of_all, held));
         let new = self.fit(i, of_all, holds);
@@ -97,9 +97,9 @@ impl DeformationPass<'_> {
         }
     }
 
-    /// The fit over the neighbours whose marks count; the one `of_all` where these are too few, and then
+    /// The fit over the neighbours whose states count; the one `of_all` where these are too few, and then
     /// nothing resists.
-    fn fit(&self, i: usize, of_all: DMat3, counts: impl Fn(Mark) -> bool) -> EdgeFit {
+    fn fit(&self, i: usize, of_all: DMat3, counts: impl Fn(FailureState) -> bool) -> EdgeFit {
         let mut moment = MomentMatrix::new(if self.plane { 2 } else { 3 });
         self.bonds_of(i, &counts).for_each(|bond| moment.add(bond.weight, bond.arm));
         let Some(inverse) = moment.inverse() else {
@@ -120,7 +120,7 @@ impl DeformationPass<'_> {
     }
 
     /// The power, W, of the contribution of a term, on the particle and on the neighbours that count.
-    fn power(&self, i: usize, added: &Added, counts: impl Fn(Mark) -> bool) -> f64 {
+    fn power(&self, i: usize, added: &Added, counts: impl Fn(FailureState) -> bool) -> f64 {
         let of_bond = |EdgeBond { to, weight, arm, change }: EdgeBond| {
             let signs = self.ghosts.mirror(to).unwrap_or(DVec3::ONE);
             let parting = self.velocity[i].0 - signs * self.velocity[self.ghosts.source(to)].0;
@@ -129,10 +129,10 @@ impl DeformationPass<'_> {
         self.sites[i].reference.0[3] * self.bonds_of(i, &counts).map(of_bond).sum::<f64>()
     }
 
-    /// The bonds with the neighbours whose marks count.
-    fn bonds_of(&self, i: usize, counts: &impl Fn(Mark) -> bool) -> impl Iterator<Item = EdgeBond> {
+    /// The bonds with the neighbours whose states count.
+    fn bonds_of(&self, i: usize, counts: &impl Fn(FailureState) -> bool) -> impl Iterator<Item = EdgeBond> {
         let own = &self.sites[i];
-        let that_count = move |(j, _): &(usize, f32)| counts(self.marks[self.ghosts.source(*j)]);
+        let that_count = move |(j, _): &(usize, f32)| counts(self.states[self.ghosts.source(*j)]);
         self.bonds.row(i).filter(that_count).map(move |(j, weight)| {
             let other = &self.sites[j];
             let arm = other.reference.xyz() - own.reference.xyz();

@@ -15,7 +15,7 @@ use crate::pair::add_pair_systems;
 use crate::plugin::{BodyKind, BodyPlan, Formulation, Offer, SetupError, SimBuilder};
 use crate::scene::Dimension;
 use crate::schedule::{Mode, Stage, Step, System};
-use crate::solids::{CORRECTED_STRESS, SolidBodies, TakenUp};
+use crate::solids::{AppliedLosses, CORRECTED_STRESS, SolidBodies};
 use crate::symmetry::repeats_of;
 use crate::world::{
     BodyId, ColumnSet, DeformationGradient, Force, Mass, PiolaStress, Position, ReferencePosition,
@@ -71,7 +71,11 @@ impl Formulation for TotalLagrangian {
     }
 
     fn columns(columns: &mut ColumnSet) {
-        columns.add::<SupportRadius>().add::<DeformationGradient>().add::<PiolaStress>().add::<TakenUp>();
+        columns
+            .add::<SupportRadius>()
+            .add::<DeformationGradient>()
+            .add::<PiolaStress>()
+            .add::<AppliedLosses>();
     }
 
     fn assemble(bodies: Vec<(BodyId, Self)>, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {

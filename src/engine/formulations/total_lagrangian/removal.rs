@@ -9,7 +9,7 @@ use crate::formulations::bonded::{Bonds, InternalForce, PackedParticle};
 use crate::linalg::dyad;
 use crate::removal::REMOVED_ENERGY;
 use crate::schedule::{AccountKind, Step, StepError};
-use crate::solids::{Loss, SolidPart, TakenUp, count_rows};
+use crate::solids::{AppliedLosses, Loss, SolidPart, count_rows};
 use crate::world::{
     DeformationGradient, Force, Mass, MissingColumn, ReferencePosition, ReferenceVolume, Removed,
     SupportRadius, World,
@@ -17,7 +17,7 @@ use crate::world::{
 
 impl Deformation {
     /// Restores the losses that the sums had left out at a checkpoint.
-    pub(super) fn take_up_restored(
+    pub(super) fn update_restored(
         &mut self,
         world: &World,
         packed: &mut PackedRows,
@@ -26,9 +26,9 @@ impl Deformation {
             return Ok(());
         }
         {
-            let taken_up = world.phase(self.phase).read::<TakenUp>()?;
-            self.removed.rows = TakenUp::rows(&taken_up, Loss::Removed);
-            self.failed = TakenUp::rows(&taken_up, Loss::Failed);
+            let applied = world.phase(self.phase).read::<AppliedLosses>()?;
+            self.removed.rows = AppliedLosses::rows(&applied, Loss::Removed);
+            self.failed = AppliedLosses::rows(&applied, Loss::Failed);
         }
         if !self.removed.rows.is_empty() {
             self.cut(world, packed)?;
@@ -41,7 +41,7 @@ impl Deformation {
     /// The passes run twice from the same places, with the bonds that are gone and without them: what these
     /// held leaves the energy balance. The second kick of the step uses the new forces, the motion up to here
     /// has used the old ones: what that takes from the motion leaves the balance with it.
-    pub(super) fn take_up_removed(
+    pub(super) fn update_removed(
         &mut self,
         step: &mut Step<'_>,
         packed: &mut PackedRows,
@@ -123,9 +123,9 @@ impl Deformation {
             self.failed.retain(|row| self.removed.rows.binary_search(row).is_err());
             cracks.rebuild(&self.failed, view.len(), bonds, ghosts);
         }
-        let mut taken_up = view.write::<TakenUp>()?;
-        TakenUp::write(&mut taken_up, Loss::Removed, &self.removed.rows);
-        TakenUp::write(&mut taken_up, Loss::Failed, &self.failed);
+        let mut applied = view.write::<AppliedLosses>()?;
+        AppliedLosses::write(&mut applied, Loss::Removed, &self.removed.rows);
+        AppliedLosses::write(&mut applied, Loss::Failed, &self.failed);
         for (law, stable_step) in self.solids.iter().zip(stable_step) {
             let rows = world.body(law.id).rows.clone();
             bonds.correct(rows.clone(), dimension, bytemuck::cast_slice(&reference), &volume, ghosts);

@@ -11,7 +11,7 @@ use crate::formulations::bonded::{
 use crate::neighbors::NeighborSearch;
 use crate::plugin::{Setup, SetupError, SimBuilder};
 use crate::ranks::Halo;
-use crate::removal::Leaving;
+use crate::removal::LeavingParticles;
 use crate::solids::CorrectedStress;
 use crate::symmetry::Ghosts;
 use crate::world::{
@@ -64,7 +64,7 @@ impl SetUp {
         };
         let packed = self.pack(reference, setup)?;
         setup.resources.insert_solid(phase, packed);
-        setup.resources.insert_of(phase, Leaving::default());
+        setup.resources.insert_of(phase, LeavingParticles::default());
         Ok(())
     }
 

@@ -7,7 +7,7 @@ use crate::formulations::bonded::{AffineFrame, BondedSites, EdgeRows, FrameIndif
 use crate::parallel::share_picked;
 use crate::ranks;
 use crate::schedule::{Run, Step, StepError};
-use crate::solids::{BodyPass, Loss, Refits, SolidBodies, SolidColumns, SolidPart, TakenUp};
+use crate::solids::{AppliedLosses, BodyPass, Loss, Refits, SolidBodies, SolidColumns, SolidPart};
 use crate::world::{Damage, MissingColumn, PhaseId, Removed, SupportRadius, Velocity, World};
 
 /// The system.
@@ -29,7 +29,7 @@ impl Deformation {
     }
 
     /// Leaves out the particles that have failed in the last step.
-    fn take_up_failed(&mut self, world: &World, packed: &mut PackedRows) -> Result<(), MissingColumn> {
+    fn update_failed(&mut self, world: &World, packed: &mut PackedRows) -> Result<(), MissingColumn> {
         let view = world.phase(self.phase);
         // Without terms on bonds, nothing of them crosses a crack.
         let damage = view.read::<Damage>().ok().filter(|_| self.solids.has_terms());
@@ -37,9 +37,9 @@ impl Deformation {
         let removed = view.read::<Removed>()?;
         let PackedRows { bonds, ghosts, cracks, .. } = packed;
         let known = self.failed.len();
-        cracks.take_up(&mut self.failed, &damage, &removed, bonds, ghosts);
+        cracks.update(&mut self.failed, &damage, &removed, bonds, ghosts);
         if self.failed.len() != known {
-            TakenUp::write(&mut view.write::<TakenUp>()?, Loss::Failed, &self.failed);
+            AppliedLosses::write(&mut view.write::<AppliedLosses>()?, Loss::Failed, &self.failed);
         }
         Ok(())
     }
@@ -91,9 +91,9 @@ impl Deformation {
             share_picked(&mut columns.deformation[middle..=middle], &[middle as u32], &rows);
             let frame = AffineFrame::of(rows.end, &columns.deformation[middle].0, &sites[middle]);
             frames.push(frame);
-            let (marks, plane) = (&cracks.marks[..], self.plane);
+            let (states, plane) = (&cracks.states[..], self.plane);
             let pass =
-                DeformationPass { bonds, ghosts, sites, frame: &frame, marks, velocity: &velocity, plane };
+                DeformationPass { bonds, ghosts, sites, frame: &frame, states, velocity: &velocity, plane };
             let own = DeformationRows {
                 stresses: &mut stresses[rows.clone()],
                 self_force: &mut self_force[rows.clone()],
@@ -124,9 +124,9 @@ impl Run for Deformation {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let resources = step.resources;
         let mut packed = resources.solid_rows_mut::<PackedRows>(self.phase);
-        self.take_up_restored(step.world, &mut packed)?;
-        self.take_up_failed(step.world, &mut packed)?;
-        if !self.take_up_removed(step, &mut packed)? {
+        self.update_restored(step.world, &mut packed)?;
+        self.update_failed(step.world, &mut packed)?;
+        if !self.update_removed(step, &mut packed)? {
             self.pass(step.world, &mut packed, SolidPart::of(step))?;
             self.solids.book(step)?;
         }

@@ -12,7 +12,8 @@ use glam::DVec3;
 
 use crate::formulations::bonded::Ellipsoid;
 use crate::neighbors::{
-    Cloud, NeighborError, NeighborList, NeighborSearch, Parted, Parting, Periodic, SupportRadii,
+    Cloud, NeighborError, NeighborList, NeighborSearch, Periodic, RelativeBounds, RelativeDisplacements,
+    SupportRadii,
 };
 use crate::symmetry::Ghosts;
 
@@ -41,7 +42,7 @@ pub(super) struct Candidates {
     /// A row for every particle of the body, with rows of the phase.
     list: NeighborList,
     skin: f64,
-    parting: Parting,
+    parting: RelativeDisplacements,
     /// The radii that it was built with, m; empty where it holds for one time.
     radii: Vec<f64>,
     /// Whether a list was built before: that of the start lasts no longer than the start.
@@ -77,7 +78,7 @@ impl Candidates {
             return false;
         }
         let grown = radii.iter().zip(&self.radii).map(|(now, then)| now - then).fold(0.0, f64::max);
-        let Parted { near, all } = self.parting.parted(places);
+        let RelativeBounds { near, all } = self.parting.parted(places);
         near + grown <= self.skin && all + largest(radii) <= self.parting.length()
     }
 

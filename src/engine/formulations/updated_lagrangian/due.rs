@@ -8,7 +8,7 @@ use super::phase::UpdatedRows;
 use super::update::{USUAL_CHANGE, Update};
 use crate::formulations::bonded::{BondedRows, Bonds, Ellipsoid, Ellipsoids, PackedParticle};
 use crate::linalg::{Sym3, extreme_stretches};
-use crate::parallel::{FourLanes, HotLoop, Lanes4, Largest, Vector, run_hot, sum_over_blocks};
+use crate::parallel::{FourLanes, HotLoop, Lanes4, Maximum, Vector, run_hot, sum_over_blocks};
 use crate::world::DeformationGradient;
 
 /// Steps between two tests of the lengths of pairs: they change slowly against the stable step.
@@ -61,7 +61,7 @@ impl UpdateRule {
         let farthest = farthest_beside(rows.clone(), packed, BESIDE * self.spacing);
         let own = &deformation[rows.clone()];
         let is_near = |stretch: f64| farthest * farthest < limit * limit * (1.0 - 1e-5) * stretch;
-        if is_near(least_stretch(own)) || is_near(smallest_stretch(own)) {
+        if is_near(stretch_bound(own)) || is_near(min_stretch(own)) {
             return false;
         }
         let UpdatedRows { sites, bonds, ghosts, .. } = packed;
@@ -70,7 +70,7 @@ impl UpdateRule {
         let following: Vec<Ellipsoid> =
             deformation.iter().map(|f| Ellipsoid::new(Ellipsoid::following(&f.0))).collect();
         let ellipsoids = Ellipsoids(&following);
-        let farthest: Largest = sum_over_blocks(&sites[rows], &|first, own: &[PackedParticle]| {
+        let farthest: Maximum = sum_over_blocks(&sites[rows], &|first, own: &[PackedParticle]| {
             let distances = (0..own.len()).flat_map(|k| {
                 let i = first_row + first + k;
                 let beside = bonds.row(i).filter(move |(j, _)| {
@@ -79,7 +79,7 @@ impl UpdateRule {
                 });
                 beside.map(move |(j, _)| ellipsoids.distance(ghosts, i, j, place(j) - place(i)))
             });
-            Largest::of(distances)
+            Maximum::of(distances)
         });
         farthest.0 > limit
     }
@@ -87,17 +87,17 @@ impl UpdateRule {
 
 /// A bound below the smallest stretch of some particles: no square of a stretch is farther from one than F^T
 /// F is from I.
-fn least_stretch(deformation: &[DeformationGradient]) -> f64 {
-    let change: Largest = sum_over_blocks(deformation, &|_, rows: &[DeformationGradient]| {
-        Largest::of(rows.iter().map(|f| (Sym3::gram(f.0) - Sym3::IDENTITY).norm()))
+fn stretch_bound(deformation: &[DeformationGradient]) -> f64 {
+    let change: Maximum = sum_over_blocks(deformation, &|_, rows: &[DeformationGradient]| {
+        Maximum::of(rows.iter().map(|f| (Sym3::gram(f.0) - Sym3::IDENTITY).norm()))
     });
     (1.0 - change.0).max(0.0).sqrt()
 }
 
 /// The smallest stretch of some particles, at most one.
-fn smallest_stretch(deformation: &[DeformationGradient]) -> f64 {
-    let most: Largest = sum_over_blocks(deformation, &|_, rows: &[DeformationGradient]| {
-        Largest::of(rows.iter().map(|f| 1.0 / extreme_stretches(f.0).smallest))
+fn min_stretch(deformation: &[DeformationGradient]) -> f64 {
+    let most: Maximum = sum_over_blocks(deformation, &|_, rows: &[DeformationGradient]| {
+        Maximum::of(rows.iter().map(|f| 1.0 / extreme_stretches(f.0).smallest))
     });
     1.0 / most.0.max(1.0)
 }
@@ -106,9 +106,9 @@ fn smallest_stretch(deformation: &[DeformationGradient]) -> f64 {
 /// other in the lists.
 fn farthest_beside(rows: Range<usize>, packed: &UpdatedRows, beside: f64) -> f64 {
     let (sites, bonds, start) = (packed.pair_sites(), packed.bonds(), rows.start);
-    let largest: Largest = sum_over_blocks(&sites[rows], &|first, own: &[PackedParticle]| {
+    let largest: Maximum = sum_over_blocks(&sites[rows], &|first, own: &[PackedParticle]| {
         let first = start + first;
-        Largest(run_hot(LargestDistance {
+        Maximum(run_hot(LargestDistance {
             sites,
             bonds,
             rows: first..first + own.len(),
@@ -165,8 +165,8 @@ impl HotLoop for LargestDistance<'_> {
                 ]);
                 let now = then + (Vector::new(a, [x, y, z]) - u_i);
                 let short = a.where_below(then.length_squared().lanes(), limit, now.length_squared().lanes());
-                let present = a.where_below(Lanes4::ZERO, a.larger(volume, own_volume), short);
-                largest = a.larger(present, largest);
+                let present = a.where_below(Lanes4::ZERO, a.max(volume, own_volume), short);
+                largest = a.max(present, largest);
             }
         }
         largest.0[0].max(largest.0[1]).max(largest.0[2]).max(largest.0[3])
@@ -180,9 +180,9 @@ fn has_changed(rows: Range<usize>, packed: &UpdatedRows, most: f64) -> bool {
     let first_row = rows.start;
     // A length changes by no more than the pair vector does: few pairs need a look at their ellipsoids.
     let shortest =
-        packed.ellipsoids[rows.clone()].iter().map(Ellipsoid::least_axis).fold(f64::INFINITY, f64::min);
+        packed.ellipsoids[rows.clone()].iter().map(Ellipsoid::axis_bound).fold(f64::INFINITY, f64::min);
     let least = (most * shortest).powi(2);
-    let largest: Largest = sum_over_blocks(&sites[rows], &|first, own: &[PackedParticle]| {
+    let largest: Maximum = sum_over_blocks(&sites[rows], &|first, own: &[PackedParticle]| {
         let changes = own.iter().enumerate().flat_map(|(k, site)| {
             let i = first_row + first + k;
             bonds.row(i).filter_map(move |(j, _)| {
@@ -195,7 +195,7 @@ fn has_changed(rows: Range<usize>, packed: &UpdatedRows, most: f64) -> bool {
                 Some((length(reference + change) - length(reference)).abs())
             })
         });
-        Largest::of(changes)
+        Maximum::of(changes)
     });
     largest.0 > most
 }

@@ -21,7 +21,7 @@ const LOST: f64 = 0.02;
 /// Factor by which a support radius grows at a time.
 const GROWTH: f64 = 1.2;
 /// Largest support radius over the first one.
-const LARGEST: f64 = 2.0;
+const MAX_SUPPORT: f64 = 2.0;
 
 /// Widens the support of particles that have lost neighbours; returns whether there are any, so that the
 /// lists have to be built again. What can fail may tear.
@@ -40,7 +40,7 @@ pub(super) fn widen(
         for row in world.body(kernel.body).rows.clone().filter(|&row| packed.volume[row] > 0.0) {
             let inverse = &packed.bonds.inverse_moment[row];
             let grown = GROWTH * support[row].0;
-            if grown <= LARGEST * first
+            if grown <= MAX_SUPPORT * first
                 && (*inverse == Sym3::ZERO || is_below(FEW, inverse, &packed.ellipsoids[row]))
             {
                 support[row].0 = grown;

@@ -17,7 +17,7 @@ use crate::pair::add_pair_systems;
 use crate::plugin::{BodyKind, BodyPlan, Formulation, Offer, SetupError, SimBuilder};
 use crate::scene::Dimension;
 use crate::schedule::{Mode, Stage, System};
-use crate::solids::{CORRECTED_STRESS, SolidBodies, SolidBody, TakenUp, require_support};
+use crate::solids::{AppliedLosses, CORRECTED_STRESS, SolidBodies, SolidBody, require_support};
 use crate::symmetry::repeats_of;
 use crate::world::{
     BodyId, Column, ColumnSet, Damage, DeformationGradient, Force, Mass, PhaseId, PiolaStress, Position,
@@ -74,7 +74,7 @@ impl Formulation for UpdatedLagrangian {
             .add::<UpdatedGradient>()
             .add::<UpdatedMetric>()
             .add::<UpdatedVolume>()
-            .add::<TakenUp>();
+            .add::<AppliedLosses>();
     }
 
     fn assemble(bodies: Vec<(BodyId, Self)>, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {

@@ -95,13 +95,13 @@ impl PairBlock {
         self.groups = 0;
     }
 
-    /// Makes room for a row of that many pairs behind the bonds that are used.
+    /// Allocates memory for a row of that many pairs behind the bonds that are used.
     #[inline(always)]
     fn reserve(&mut self, used: usize, count: usize) {
-        let (room, groups) = (used + count + 4, self.groups + count / 4 + 1);
-        if self.neighbors.len() < room {
-            self.neighbors.resize(room * 3 / 2, 0);
-            self.weights.resize(room * 3 / 2, 0.0);
+        let (len, groups) = (used + count + 4, self.groups + count / 4 + 1);
+        if self.neighbors.len() < len {
+            self.neighbors.resize(len * 3 / 2, 0);
+            self.weights.resize(len * 3 / 2, 0.0);
         }
         if self.kept.len() < groups {
             let groups = groups * 3 / 2;

@@ -10,7 +10,7 @@ use super::reference::RenewError;
 use crate::formulations::bonded::{BodySetUp, Bonds, Cracks, HeldParticles, HessianRows, held_of};
 use crate::linalg::Sym3;
 use crate::plugin::{Setup, SetupError, SimBuilder};
-use crate::removal::Leaving;
+use crate::removal::LeavingParticles;
 use crate::solids::StepEstimate;
 use crate::symmetry::Ghosts;
 use crate::world::{
@@ -52,7 +52,7 @@ impl UpdatedSetUp {
         rows.take_gradients(setup.world, phase, &[]).map_err(|error| SetupError::internal(&error))?;
         rows.warn_of_released_at_start(setup);
         setup.resources.insert_solid(phase, rows);
-        setup.resources.insert_of(phase, Leaving::default());
+        setup.resources.insert_of(phase, LeavingParticles::default());
         Ok(())
     }
 

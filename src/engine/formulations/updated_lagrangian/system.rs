@@ -19,8 +19,8 @@ use crate::notation::quantity;
 use crate::parallel::share_picked;
 use crate::schedule::{AccountKind, Run, Shared, Step, StepError};
 use crate::solids::{
-    BodyPass, HessianForm, Loss, SolidBodies, SolidColumns, SolidPart, StepEstimate, TakenUp, count_rows,
-    fill_rows,
+    AppliedLosses, BodyPass, HessianForm, Loss, SolidBodies, SolidColumns, SolidPart, StepEstimate,
+    count_rows, fill_rows,
 };
 use crate::world::{
     Damage, DeformationGradient, Force, Mass, MissingColumn, PhaseId, PhaseView, Position, ReferencePosition,
@@ -380,7 +380,7 @@ impl UpdatedSolids {
 
 impl UpdatedSolids {
     /// Leaves out the particles removed or failed since the last update, and notes the bodies with losses.
-    fn take_up_lost(&mut self, world: &World, has_lost: &mut [bool]) -> Result<(), MissingColumn> {
+    fn update_lost(&mut self, world: &World, has_lost: &mut [bool]) -> Result<(), MissingColumn> {
         let view = world.phase(self.phase);
         let removed = view.read::<Removed>()?;
         let count = count_rows(&removed, |row| *row != Removed::NO);
@@ -404,17 +404,17 @@ impl UpdatedSolids {
             *has_lost =
                 now.into_iter().zip(&before).any(|(now, before)| within(now, rows) != within(before, rows));
         }
-        let mut taken_up = view.write::<TakenUp>()?;
-        TakenUp::write(&mut taken_up, Loss::Removed, &self.removed);
-        TakenUp::write(&mut taken_up, Loss::Failed, &self.failed);
+        let mut applied = view.write::<AppliedLosses>()?;
+        AppliedLosses::write(&mut applied, Loss::Removed, &self.removed);
+        AppliedLosses::write(&mut applied, Loss::Failed, &self.failed);
         Ok(())
     }
 
     /// Restores the losses that the sums had left out from their column, after a restart.
-    fn read_taken_up(&mut self, world: &World) -> Result<(), MissingColumn> {
-        let taken_up = world.phase(self.phase).read::<TakenUp>()?;
-        self.removed = TakenUp::rows(&taken_up, Loss::Removed);
-        self.failed = TakenUp::rows(&taken_up, Loss::Failed);
+    fn read_applied_losses(&mut self, world: &World) -> Result<(), MissingColumn> {
+        let applied = world.phase(self.phase).read::<AppliedLosses>()?;
+        self.removed = AppliedLosses::rows(&applied, Loss::Removed);
+        self.failed = AppliedLosses::rows(&applied, Loss::Failed);
         Ok(())
     }
 }
@@ -430,7 +430,7 @@ impl Run for UpdatedSolids {
         let resources = step.resources;
         let mut packed = resources.solid_rows_mut::<UpdatedRows>(self.phase);
         if std::mem::take(&mut self.is_stale) {
-            self.read_taken_up(step.world)?;
+            self.read_applied_losses(step.world)?;
             let renewed = packed.renew(step.world, self.phase, &self.estimates(), &self.removed);
             renewed.map_err(|error| error.in_step(step.world))?;
             packed.take_gradients(step.world, self.phase, &self.failed)?;
@@ -443,7 +443,7 @@ impl Run for UpdatedSolids {
         let mut due = std::mem::take(&mut self.due);
         due.clear();
         due.resize(self.solids.len(), false);
-        self.take_up_lost(step.world, &mut due)?;
+        self.update_lost(step.world, &mut due)?;
         self.has_lost.clone_from(&due);
         for (k, due) in due.iter_mut().enumerate() {
             *due = *due || self.is_due(k, step, &packed)?;

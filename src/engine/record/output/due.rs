@@ -274,7 +274,7 @@ impl Output {
         self.folder.file(SUMMARY)
     }
 
-    /// Least, largest and last values of every probe, by the names of the probes.
+    /// Minimum, maximum and last values of every probe, by the names of the probes.
     pub fn extremes(&self) -> impl Iterator<Item = (&str, &[Extreme])> {
         self.tracks.iter().skip(1).map(|track| (track.name.as_str(), track.table.extremes.as_slice()))
     }

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::folder::OutputFolder;
-use super::present::Present;
+use super::present::PresentRows;
 use super::track::failed;
 use crate::fields::ChosenField;
 use crate::neighbors::Periodic;
@@ -101,7 +101,7 @@ impl Frames {
         let mut numbers = Vec::new();
         for (k, body) in step.world.bodies().iter().enumerate() {
             let x = step.world.phase(body.phase).read::<Position>()?;
-            let present = Present::of(step.world, BodyId(k))?;
+            let present = PresentRows::of(step.world, BodyId(k))?;
             let places: Vec<_> =
                 x[body.rows.clone()].iter().map(|x| self.periodic.wrap(x.0).as_vec3().to_array()).collect();
             positions.push(present.keep(places, 1));
@@ -139,7 +139,7 @@ impl Frames {
     fn write(&mut self, step: &Step<'_>) -> Result<(), StepError> {
         let Self { list: Some(list), periodic, written, .. } = self else { return Ok(()) };
         for (k, body) in step.world.bodies().iter().enumerate() {
-            let present = Present::of(step.world, BodyId(k))?;
+            let present = PresentRows::of(step.world, BodyId(k))?;
             let points: Vec<[f64; 3]> = {
                 let x = step.world.phase(body.phase).read::<Position>()?;
                 present.keep(x[body.rows.clone()].iter().map(|x| periodic.wrap(x.0).to_array()).collect(), 1)

@@ -3,9 +3,9 @@
 use crate::world::{BodyId, MissingColumn, Removed, World};
 
 /// The rows of a body that have not been removed, counted from its first; none where that is all of them.
-pub(super) struct Present(Option<Vec<usize>>);
+pub(super) struct PresentRows(Option<Vec<usize>>);
 
-impl Present {
+impl PresentRows {
     pub fn of(world: &World, body: BodyId) -> Result<Self, MissingColumn> {
         let (view, rows) = world.body_view(body);
         let removed = &view.read::<Removed>()?[rows];

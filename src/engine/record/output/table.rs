@@ -7,16 +7,16 @@ use serde::{Deserialize, Serialize};
 use super::folder::OutputFolder;
 use crate::record::{Existing, SeriesError, SeriesWriter};
 
-/// Least, largest and last value of a column, with their times.
+/// Minimum, maximum and last value of a column, with their times.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Extreme {
     /// Name of the column.
     pub name: String,
     /// Unit, SI.
     pub unit: String,
-    /// Least value; NaN if there has been none.
+    /// Minimum value; NaN if there has been none.
     pub min: f64,
-    /// Time of the least value, s.
+    /// Time of the minimum value, s.
     pub min_time: f64,
     /// Largest value.
     pub max: f64,

@@ -6,18 +6,18 @@ use super::measure::Measure;
 use super::stencil::Stencil;
 use super::taken::{Extremum, of_number};
 use crate::fields::ChosenField;
-use crate::scene::Take;
+use crate::scene::Reduction;
 use crate::schedule::Resources;
 use crate::world::{BodyId, Column, MissingColumn, Position, Removed, World};
 
 /// Reduction of the values at the points.
-pub(super) enum Made {
+pub(super) enum PointReduction {
     /// The value at the only point.
     Value,
     /// All of them, each with its distance from the first, m.
     Line(Vec<f64>),
     /// Something over points that stand for these areas, m2.
-    Taken(Take, Vec<f64>),
+    Taken(Reduction, Vec<f64>),
 }
 
 /// A field at points of a body.
@@ -25,15 +25,17 @@ pub(super) struct BodyPoints {
     pub body: BodyId,
     pub field: ChosenField,
     pub stencils: Vec<Stencil>,
-    pub made: Made,
+    pub made: PointReduction,
 }
 
 impl Measure for BodyPoints {
     fn columns(&self) -> Vec<(String, &'static str)> {
         let names = self.field.column_names();
         match &self.made {
-            Made::Line(along) => line_columns(&self.field, along),
-            Made::Taken(Take::Minimum | Take::Maximum, _) => Extremum::columns(&self.field),
+            PointReduction::Line(along) => line_columns(&self.field, along),
+            PointReduction::Taken(Reduction::Minimum | Reduction::Maximum, _) => {
+                Extremum::columns(&self.field)
+            }
             _ => names.into_iter().map(|name| (name, self.field.unit())).collect(),
         }
     }
@@ -67,8 +69,8 @@ impl Measure for BodyPoints {
         };
         let all: Vec<Vec<f64>> = shares.iter().map(at).collect();
         match &self.made {
-            Made::Value | Made::Line(_) => Ok(all.concat()),
-            Made::Taken(take @ (Take::Minimum | Take::Maximum), _) => {
+            PointReduction::Value | PointReduction::Line(_) => Ok(all.concat()),
+            PointReduction::Taken(take @ (Reduction::Minimum | Reduction::Maximum), _) => {
                 let position = &view.read::<Position>()?[rows];
                 let mut extremum = Extremum::new(*take);
                 for (values, shares) in all.iter().zip(&shares) {
@@ -77,7 +79,7 @@ impl Measure for BodyPoints {
                 }
                 Ok(extremum.values(axes))
             }
-            Made::Taken(_, areas) => {
+            PointReduction::Taken(_, areas) => {
                 let there = || all.iter().zip(areas).filter(|(values, _)| !values[0].is_nan());
                 let total: f64 = there().map(|(_, area)| area).sum();
                 let mean = |c: usize| there().map(|(values, area)| values[c] * area).sum::<f64>() / total;

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::body_points::{BodyPoints, Made};
+use super::body_points::{BodyPoints, PointReduction};
 use super::gauge::{Gauge, at_probe};
 use super::line::SpaceLine;
 use super::particles::ParticleGauge;
@@ -12,7 +12,7 @@ use super::taken::Extremal;
 use crate::fields::ChosenField;
 use crate::notation;
 use crate::plugin::{BodyKind, BodyPlan, SimBuilder, facets_of};
-use crate::scene::{self, Line, Problem, Quantity, RelativeTo, Select, Take};
+use crate::scene::{self, Line, Problem, Quantity, Reduction, RelativeTo, Select};
 use crate::world::BodySet;
 
 /// Place of a probe.
@@ -24,14 +24,14 @@ pub(super) struct ProbePlace<'a> {
     at: DVec3,
     line: Option<Line>,
     follows: Option<&'a str>,
-    take: Take,
+    take: Reduction,
     may_be_empty: bool,
 }
 
 impl<'a> ProbePlace<'a> {
     /// The place of a probe.
     pub fn of(k: usize, probe: &'a scene::Probe) -> Self {
-        let default = if probe.quantity == Quantity::Force { Take::Sum } else { Take::Mean };
+        let default = if probe.quantity == Quantity::Force { Reduction::Sum } else { Reduction::Mean };
         Self {
             k,
             path: "",
@@ -53,7 +53,7 @@ impl<'a> ProbePlace<'a> {
             at: to.at.map_or(DVec3::ZERO, |point| point.0),
             line: None,
             follows: to.follows.as_deref(),
-            take: probe.take.unwrap_or(Take::Mean),
+            take: probe.take.unwrap_or(Reduction::Mean),
             may_be_empty: probe.may_be_empty,
         }
     }
@@ -95,8 +95,8 @@ pub(super) fn gauge_at(
         sim.select_at_start(on, &format!("{}on", place.path)).map_err(|error| at_probe(place.k, error))?;
     let field = field(&BodySet::new(selection.parts.iter().map(|(id, _)| *id)), true)?;
     match place.take {
-        Take::Mean | Take::Sum => {
-            Ok(Gauge::Particles(ParticleGauge { selection, field, sum: place.take == Take::Sum }))
+        Reduction::Mean | Reduction::Sum => {
+            Ok(Gauge::Particles(ParticleGauge { selection, field, sum: place.take == Reduction::Sum }))
         }
         take => {
             check_number(place, &field)?;
@@ -168,7 +168,7 @@ fn points_of_body(
         })
     };
     let stencils = found.into_iter().zip(&points).map(stencil).collect::<Result<Vec<_>, _>>()?;
-    let made = if place.line.is_some() { Made::Line(along) } else { Made::Value };
+    let made = if place.line.is_some() { PointReduction::Line(along) } else { PointReduction::Value };
     Ok(Gauge::Measure(Box::new(BodyPoints { body: body.id, field, stencils, made })))
 }
 
@@ -194,7 +194,7 @@ fn surface(
             help,
         ));
     };
-    if place.take == Take::Sum {
+    if place.take == Reduction::Sum {
         return Err(place.problem(
             "take",
             "a surface has no sum over particles",
@@ -202,7 +202,7 @@ fn surface(
         ));
     }
     let field = field(&BodySet::new([body.id]), true)?;
-    if place.take != Take::Mean {
+    if place.take != Reduction::Mean {
         check_number(place, &field)?;
     }
     let chosen = facets_of(on, body.id, &facets, sim).map_err(|error| at_probe(place.k, error))?;
@@ -214,7 +214,7 @@ fn surface(
     if stencils.is_empty() {
         return Err(place.problem("on", "no part of the surface is selected", extents(&[body])));
     }
-    let made = Made::Taken(place.take, areas);
+    let made = PointReduction::Taken(place.take, areas);
     Ok(Gauge::Measure(Box::new(BodyPoints { body: body.id, field, stencils, made })))
 }
 

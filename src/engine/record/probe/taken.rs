@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::measure::Measure;
 use crate::fields::ChosenField;
 use crate::plugin::Selection;
-use crate::scene::Take;
+use crate::scene::Reduction;
 use crate::schedule::Resources;
 use crate::world::{Column, MissingColumn, Position, Removed, World};
 
@@ -17,8 +17,8 @@ pub(super) struct Extremum {
 }
 
 impl Extremum {
-    pub fn new(take: Take) -> Self {
-        Self { sign: if take == Take::Minimum { -1.0 } else { 1.0 }, found: None }
+    pub fn new(take: Reduction) -> Self {
+        Self { sign: if take == Reduction::Minimum { -1.0 } else { 1.0 }, found: None }
     }
 
     /// The value with the coordinates of its place.
@@ -56,7 +56,7 @@ pub(super) fn of_number(values: &[f64]) -> f64 {
 pub(super) struct Extremal {
     pub selection: Selection,
     pub field: ChosenField,
-    pub take: Take,
+    pub take: Reduction,
 }
 
 impl Measure for Extremal {

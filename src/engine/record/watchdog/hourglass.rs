@@ -17,7 +17,7 @@ const SHARE: f64 = 0.2;
 
 /// Hourglass energy, over the largest energy of any other kind that the body has had, below which its share
 /// says nothing: at the start of a run all that a body has may be kinetic.
-const LEAST: f64 = 0.02;
+const MIN_ENERGY: f64 = 0.02;
 
 /// Largest strain energy plus plastic work of a body per volume, over that of any body of the scene, below
 /// which its share says nothing: no wave has reached the body yet, and what it has comes before the front.
@@ -80,7 +80,7 @@ impl HourglassShare {
             if internal <= 0.0 || internal <= REACHED * densest * self.volumes[k] {
                 continue;
             }
-            let is_large = |energy: f64| energy > SHARE * internal && energy > LEAST * self.largest[k];
+            let is_large = |energy: f64| energy > SHARE * internal && energy > MIN_ENERGY * self.largest[k];
             let (name, percent) = (&body.name, |energy: f64| 100.0 * energy / internal);
             let (hourglass, time) = self.most[k];
             if is_large(hourglass) {

@@ -7,7 +7,7 @@ use crate::scene::Item;
 use crate::schedule::Step;
 use crate::world::BodyId;
 
-/// Least pressure below zero, over the largest magnitude of the pressure in the same flow, that counts as
+/// Minimum pressure below zero, over the largest magnitude of the pressure in the same flow, that counts as
 /// tension.
 const TENSION: f64 = 0.1;
 

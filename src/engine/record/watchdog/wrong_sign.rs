@@ -9,7 +9,7 @@ use crate::notation::quantity;
 use crate::parallel::{BlockSum, sum_over_blocks};
 use crate::plugin::{BodyKind, BodyPlan, SimBuilder};
 use crate::removal::REMOVED_ENERGY;
-use crate::schedule::{Account, AccountKind, INTO_HEAT, Step, warn_anew};
+use crate::schedule::{Account, AccountKind, INTO_HEAT, Step, replace_warning};
 
 /// Energy given, over the largest one that any account has held, that is worth a warning.
 const SHARE: f64 = 0.01;
@@ -34,14 +34,14 @@ const CONTACT_DAMPING: &str = "contact_damping";
 /// Watches the accounts of what takes energy out of the motion.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct WrongSign {
-    accounts: Vec<Given>,
+    accounts: Vec<SuppliedEnergy>,
     /// Largest work that gravity or a load could do, seen so far, J.
     weight: f64,
 }
 
 /// Energy supplied by an account.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-struct Given {
+struct SuppliedEnergy {
     name: String,
     /// Consecutive checks in which it has supplied too much.
     looks: u32,
@@ -71,7 +71,8 @@ impl WrongSign {
             let scale = largest.max(SHARE_OF_WEIGHT / worth * self.weight);
             let share = if scale > 0.0 { -account.total() / scale } else { 0.0 };
             let k = self.accounts.iter().position(|given| given.name == account.name).unwrap_or_else(|| {
-                self.accounts.push(Given { name: account.name.clone(), ..Given::default() });
+                self.accounts
+                    .push(SuppliedEnergy { name: account.name.clone(), ..SuppliedEnergy::default() });
                 self.accounts.len() - 1
             });
             let given = &mut self.accounts[k];
@@ -88,7 +89,7 @@ impl WrongSign {
                 quantity(step.clock.end(), "s"),
                 advice(account, remedies, step)
             );
-            warn_anew(step.warnings, &begin, text);
+            replace_warning(step.warnings, &begin, text);
         }
     }
 }

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::alike::Kinds;
 use super::body::HeldBody;
-use super::lattice::{BondLattice, Share};
+use super::lattice::{BondLattice, BondShare};
 use super::lattices::Lattices;
 use super::least_squares::SparseRows;
 use super::zone::Zone;
@@ -113,7 +113,7 @@ impl Equations {
     /// area of one.
     pub fn imbalance(&self, solution: &[f64]) -> f64 {
         let is_any_inside = self.balances.iter().any(|balance| balance.is_inside);
-        let changes = self.rows.times(solution);
+        let changes = self.rows.mul(solution);
         let (mut sum, mut count) = (0.0, 0.0);
         for (balance, (rest, change)) in self.balances.iter().zip(self.rest.iter().zip(changes)) {
             let missing = (rest - change) / balance.weight;
@@ -129,7 +129,8 @@ impl Equations {
 
 /// b of a particle in a lattice.
 fn target(lattice: &BondLattice, start: &[f64], k: u32) -> DVec3 {
-    let part =
-        |share: Share| start[k as usize] * share.own_part + start[share.other as usize] * share.other_part;
+    let part = |share: BondShare| {
+        start[k as usize] * share.own_part + start[share.other as usize] * share.other_part
+    };
     lattice.shares(k).map(part).sum()
 }

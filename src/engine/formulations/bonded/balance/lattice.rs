@@ -30,7 +30,7 @@ pub(super) struct BondLattice {
 }
 
 /// A bond of particle i and what it adds to b_i, m2 (m in two dimensions).
-pub(super) struct Share {
+pub(super) struct BondShare {
     /// Number of the other particle in the body; a ghost has that of its source.
     pub other: u32,
     /// V_i V_j w_ij M_i^-1 X_ij.
@@ -87,7 +87,7 @@ impl BondLattice {
     }
 
     /// Contributions of the bonds of a particle to its b.
-    pub fn shares(&self, number: u32) -> impl Iterator<Item = Share> + '_ {
+    pub fn shares(&self, number: u32) -> impl Iterator<Item = BondShare> + '_ {
         self.rows[number as usize].into_iter().flat_map(move |i| {
             let i = i as usize;
             self.bonds.row(i).map(move |(j, weight)| {
@@ -95,11 +95,11 @@ impl BondLattice {
                 let source = self.ghosts.source(j);
                 let weight = self.volume[i] * self.volume[source] * f64::from(weight);
                 let signs = self.ghosts.mirror(j).unwrap_or(DVec3::ONE);
-                let times = |m: &Sym3, x: DVec3| m.to_matrix() * x;
-                Share {
+                let mul = |m: &Sym3, x: DVec3| m.to_matrix() * x;
+                BondShare {
                     other: self.numbers[source],
-                    own_part: weight * times(&self.bonds.inverse_moment[i], x_ij),
-                    other_part: weight * signs * times(&self.bonds.inverse_moment[source], signs * x_ij),
+                    own_part: weight * mul(&self.bonds.inverse_moment[i], x_ij),
+                    other_part: weight * signs * mul(&self.bonds.inverse_moment[source], signs * x_ij),
                 }
             })
         })

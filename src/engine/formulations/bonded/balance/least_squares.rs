@@ -10,8 +10,9 @@ pub(super) struct SparseRows {
 
 /// Norm of the gradient over that of the start at which the solution is good enough.
 const GOOD: f64 = 1e-7;
-/// Most iterations: cubic lattices take less than 200, those with many shares on their bounds some hundred.
-const MOST: usize = 1000;
+/// Maximum number of iterations: cubic lattices take less than 200, those with many shares on their bounds
+/// some hundred.
+const MAX_ITERATIONS: usize = 1000;
 /// Distance from a bound that is none, over the distance of the bounds.
 const ON_BOUND: f64 = 1e-12;
 
@@ -41,12 +42,12 @@ impl SparseRows {
     }
 
     /// A x.
-    pub fn times(&self, x: &[f64]) -> Vec<f64> {
+    pub fn mul(&self, x: &[f64]) -> Vec<f64> {
         self.rows().map(|row| row.iter().map(|(column, value)| value * x[*column as usize]).sum()).collect()
     }
 
     /// A^T y.
-    fn transposed_times(&self, y: &[f64], columns: usize) -> Vec<f64> {
+    fn transposed_mul(&self, y: &[f64], columns: usize) -> Vec<f64> {
         let mut product = vec![0.0; columns];
         for (row, y) in self.rows().zip(y) {
             row.iter().for_each(|(column, value)| product[*column as usize] += value * y);
@@ -63,7 +64,7 @@ fn dot(x: &[f64], y: &[f64]) -> f64 {
     x.iter().zip(y).map(|(x, y)| x * y).sum()
 }
 
-/// The sum |A x - b|^2 + sum_k damping_k^2 x_k^2, with the least and the greatest value of each unknown.
+/// The sum |A x - b|^2 + sum_k damping_k^2 x_k^2, with the minimum and the maximum value of each unknown.
 pub(super) struct LeastSquares<'a> {
     pub a: &'a SparseRows,
     pub b: &'a [f64],
@@ -76,7 +77,7 @@ impl LeastSquares<'_> {
     /// gradient projections (MPRGP: Dostál & Schöberl, Comput. Optim. Appl. 30 (2005) 23-43).
     pub fn solve(&self) -> Vec<f64> {
         let mut x: Vec<f64> = self.bounds.iter().map(|(least, most)| 0f64.clamp(*least, *most)).collect();
-        let goal = self.a.transposed_times(self.b, x.len());
+        let goal = self.a.transposed_mul(self.b, x.len());
         let slope = |x: &[f64]| -> Vec<f64> {
             self.product(x).iter().zip(&goal).map(|(product, goal)| product - goal).collect()
         };
@@ -85,7 +86,7 @@ impl LeastSquares<'_> {
         let mut gradient = slope(&x);
         let mut parts = self.split(&x, &gradient);
         let mut direction = parts.free.clone();
-        for _ in 0..MOST {
+        for _ in 0..MAX_ITERATIONS {
             if square(&parts.free) + square(&parts.inward) <= enough {
                 break;
             }
@@ -95,20 +96,20 @@ impl LeastSquares<'_> {
             }
             let image = self.product(&direction);
             let curvature = dot(&direction, &image);
-            let (step, room) = (dot(&gradient, &direction) / curvature, self.room(&x, &direction));
-            let taken = step.min(room);
+            let (step, max_step) = (dot(&gradient, &direction) / curvature, self.max_step(&x, &direction));
+            let taken = step.min(max_step);
             x.iter_mut().zip(&direction).for_each(|(x, p)| *x -= taken * p);
             gradient.iter_mut().zip(&image).for_each(|(g, q)| *g -= taken * q);
             self.put_on_bounds(&mut x);
             parts = self.split(&x, &gradient);
-            if step > room && !releases {
+            if step > max_step && !releases {
                 // Along the slope, others come to their bounds at once.
                 x.iter_mut().zip(&parts.free).for_each(|(x, free)| *x -= short * free);
                 self.put_on_bounds(&mut x);
                 gradient = slope(&x);
                 parts = self.split(&x, &gradient);
             }
-            if step > room || releases {
+            if step > max_step || releases {
                 direction.clone_from(&parts.free);
             } else {
                 let before = dot(&parts.free, &image) / curvature;
@@ -120,7 +121,7 @@ impl LeastSquares<'_> {
 
     /// (A^T A + damping^2) x.
     fn product(&self, x: &[f64]) -> Vec<f64> {
-        let mut product = self.a.transposed_times(&self.a.times(x), x.len());
+        let mut product = self.a.transposed_mul(&self.a.mul(x), x.len());
         for (own, (damping, x)) in product.iter_mut().zip(self.damping.iter().zip(x)) {
             *own += damping * damping * x;
         }
@@ -155,8 +156,8 @@ impl LeastSquares<'_> {
         slopes
     }
 
-    /// The longest step against a direction that stays within the bounds.
-    fn room(&self, x: &[f64], direction: &[f64]) -> f64 {
+    /// The maximum step against a direction that stays within the bounds.
+    fn max_step(&self, x: &[f64], direction: &[f64]) -> f64 {
         let of = |((x, p), (least, most)): ((&f64, &f64), &(f64, f64))| {
             if *p > 0.0 {
                 (x - least) / p

@@ -11,7 +11,7 @@ use super::zone::Zone;
 /// where nothing is in balance. It grows with the fourth power of the distance from the side over the support
 /// radius, as the shares of layers farther in need hardly change.
 const DAMPING: f64 = 0.005;
-/// The least and the greatest share: every particle resists.
+/// The minimum and the maximum share: every particle resists.
 const SHARES: (f64, f64) = (0.1, 2.5);
 
 /// The balance of a uniform stress beside the sides of a body.

@@ -166,7 +166,7 @@ fn slope(h: &DMat3, site: &PackedParticle, frame: &AffineFrame) -> CorrectedStre
     let (x, y, z) = (half.x_axis, half.y_axis, half.z_axis);
     let columns = [Lanes4::new(x, 0.0), Lanes4::new(y, 0.0), Lanes4::new(z, 0.0)];
     let mut slope = CorrectedStress { columns, traction: Lanes4::ZERO };
-    let moved = slope.times(site.reference.xyz(), DVec3::ZERO) + frame.rest(site);
+    let moved = slope.apply(site.reference.xyz(), DVec3::ZERO) + frame.rest(site);
     slope.columns[0].0[3] = 1.0;
     slope.traction = Lanes4::new(moved, site.reference.0[3]);
     slope
@@ -228,7 +228,7 @@ impl PlaneOrSpace for ResidualBlock<'_, '_> {
             for axis in 0..D {
                 sum = a.scale_add(-site.reference.0[axis], of_others.columns[axis], sum);
             }
-            let sum = sum.xyz() + slopes[i].times(bonds.first_moment[i], DVec3::ZERO);
+            let sum = sum.xyz() + slopes[i].apply(bonds.first_moment[i], DVec3::ZERO);
             let before = (residual[k].0, held[k].0);
             let h = 0.5 * support[k].0;
             let now = sum * h;

@@ -61,7 +61,7 @@ impl HessianRows {
         self.with_form(form).next().is_some()
     }
 
-    /// Makes room for real rows and ghosts.
+    /// Allocates memory for real rows and ghosts.
     pub fn resize(&mut self, rows: usize, ghosts: usize) {
         if self.bodies.is_empty() {
             return;

@@ -53,7 +53,7 @@ pub(super) struct VidalBody<'a> {
 }
 
 impl VidalRows {
-    /// Makes room for real rows and ghosts, and for the bonds.
+    /// Allocates memory for real rows and ghosts, and for the bonds.
     pub fn resize(&mut self, rows: usize, ghosts: usize, bonds: usize) {
         self.curvature.resize(bonds, 0.0);
         self.step.resize(rows + ghosts, DVec3::ZERO);

@@ -18,8 +18,8 @@ use crate::parallel::{EIGHT, Lanes4};
 use crate::scene::Precision;
 use crate::world::BodyId;
 
-/// Least sum of V_f W for which there is fluid beside a boundary.
-pub const LEAST_SHARE: f64 = 1e-10;
+/// Minimum sum of V_f W for which there is fluid beside a boundary.
+pub const MIN_SHARE: f64 = 1e-10;
 
 /// A neighbour of a fluid particle.
 #[derive(Clone, Copy, Debug)]
@@ -68,10 +68,10 @@ pub struct FlowCloud {
     pub(in crate::formulations::fluid) compression: Vec<f64>,
     /// The part of D that the pressure of boundaries answers for, 1/s; zero or empty where none has suction.
     pub(in crate::formulations::fluid) boundary_compression: Vec<f64>,
-    /// Whether every fluid particle is within `reach` of a boundary particle, 1 if so.
+    /// Whether every fluid particle is within `repulsion_range` of a boundary particle, 1 if so.
     pub(in crate::formulations::fluid) is_close: Vec<u8>,
     /// Distance within which a fluid particle that a boundary repels has a particle of it, m.
-    pub(in crate::formulations::fluid) reach: f64,
+    pub(in crate::formulations::fluid) repulsion_range: f64,
     /// Fluid particles that boundaries repel, in the order of rows.
     pub(in crate::formulations::fluid) repelled: Vec<Repelled>,
     /// Edges between walls that move against each other.

@@ -44,7 +44,7 @@ mod others;
 
 pub use arrangement::ArrangementPass;
 pub use edges::{BoundaryEdges, EdgeParticle, Front};
-pub use flow_cloud::{FlowCloud, LEAST_SHARE, Near};
+pub use flow_cloud::{FlowCloud, MIN_SHARE, Near};
 pub use group::{BoundarySurface, FluidState, Group, Role};
 pub use near::{part, take_until};
 pub use neighborhood::{Cluster, Neighborhood};

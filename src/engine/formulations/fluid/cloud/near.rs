@@ -112,7 +112,7 @@ pub fn part<'a>(row: &'a [u32], among: &Range<usize>) -> &'a [u32] {
 pub(super) fn part_of(row: &[u32], among: &Range<usize>) -> Range<usize> {
     let (Some(&first), Some(&last)) = (row.first(), row.last()) else { return 0..0 };
     let (start, end) = (among.start as u32, among.end as u32);
-    // Most rows have no such neighbour, and a row of one body has no other.
+    // Maximum number of rows have no such neighbour, and a row of one body has no other.
     if last < start || end <= first {
         return 0..0;
     }

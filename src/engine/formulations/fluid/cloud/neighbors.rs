@@ -32,23 +32,23 @@ pub struct Neighbors {
 }
 
 impl FlowCloud {
-    /// Builds the lists from these positions, and the room for the neighbours within the support.
+    /// Builds the lists from these positions, and the memory for the neighbours within the support.
     fn build_lists(&mut self, positions: &[DVec3]) -> Result<(), NeighborError> {
         let Self { pairs, near, near_boundary, fluid, blocks, .. } = self;
         pairs.build(positions, *fluid, blocks.as_mut().map(|blocks| &mut blocks.lists))?;
         match blocks {
-            Some(blocks) => blocks.make_room(near),
-            None => near.make_room(&[&pairs.fluid, &pairs.walls]),
+            Some(blocks) => blocks.allocate(near),
+            None => near.allocate(&[&pairs.fluid, &pairs.walls]),
         }
         if blocks.as_ref().is_none_or(|blocks| blocks.hides) {
-            near_boundary.make_room(&[&pairs.boundary]);
+            near_boundary.allocate(&[&pairs.boundary]);
         }
         self.find_halo();
         Ok(())
     }
 
     /// Whether loops are no longer divided as they were when the lists were built.
-    fn is_divided_anew(&self) -> bool {
+    fn is_repartitioned(&self) -> bool {
         self.pairs.builds > 0 && self.blocks.as_ref().is_some_and(|blocks| !blocks.lists.others.is_current())
     }
 
@@ -87,7 +87,7 @@ impl Run for Neighbors {
             message: error.to_string(),
         };
         let is_restored = std::mem::take(&mut self.is_restored);
-        if is_restored || cloud.is_divided_anew() || is_known_otherwise && cloud.pairs.builds > 0 {
+        if is_restored || cloud.is_repartitioned() || is_known_otherwise && cloud.pairs.builds > 0 {
             cloud.read_list_positions(step.world, &mut self.built)?;
             cloud.build_lists(&self.built).map_err(failed)?;
             if !is_restored {

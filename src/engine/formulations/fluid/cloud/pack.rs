@@ -8,7 +8,7 @@ use super::flow_cloud::FlowCloud;
 use super::group::Group;
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::formulations::fluid::lists::blocks::{Packed, Units, pack_states};
-use crate::formulations::fluid::lists::{DisplacementBounds, Growing};
+use crate::formulations::fluid::lists::{BoundsBuilder, DisplacementBounds};
 use crate::parallel::{
     FourLanes, HotLoop, Lanes4, others_rows, run_hot, sum_over_blocks, sum_over_own_blocks,
 };
@@ -159,7 +159,7 @@ impl HotLoop for PackFluid<'_> {
     #[inline(always)]
     fn run<A: FourLanes>(self, a: A) -> DisplacementBounds {
         let Self((records, x, v, removed), (mass, density, pressure), packed, units) = self;
-        let mut moved = Growing::new();
+        let mut moved = BoundsBuilder::new();
         for (k, record) in records.iter_mut().enumerate() {
             let volume = if removed[k] == Removed::NO { mass[k].0 / density[k].0 } else { 0.0 };
             write(a, record, Lanes4::new(x[k].0, volume), &mut moved);
@@ -178,7 +178,7 @@ impl HotLoop for PackBoundary<'_> {
     #[inline(always)]
     fn run<A: FourLanes>(self, a: A) -> DisplacementBounds {
         let Self((records, x, v, removed), volume, packed, units) = self;
-        let mut moved = Growing::new();
+        let mut moved = BoundsBuilder::new();
         for (k, record) in records.iter_mut().enumerate() {
             let volume = if removed[k] == Removed::NO { volume[k].0 } else { 0.0 };
             write(a, record, Lanes4::new(x[k].0, volume), &mut moved);
@@ -199,7 +199,7 @@ fn pack_block(packed: Option<&mut [Packed]>, records: &[FlowParticle], units: Op
 
 /// Writes the place of a particle, and adds to `moved` how far it is from where it was.
 #[inline(always)]
-fn write<A: FourLanes>(a: A, record: &mut FlowParticle, place: Lanes4, moved: &mut Growing) {
-    moved.add(a, a.minus(place, record.place));
+fn write<A: FourLanes>(a: A, record: &mut FlowParticle, place: Lanes4, moved: &mut BoundsBuilder) {
+    moved.add(a, a.sub(place, record.place));
     record.place = place;
 }

@@ -27,7 +27,7 @@ impl<const R: usize, const S: usize, P: RowPass<R, S>> BlockLoop for RowPassBloc
         let unit = [a.splat(units.length.x), a.splat(units.length.y), a.splat(units.length.z)];
         let kernel = &cloud.kernel;
         let limit = a.splat(kernel.support * kernel.support);
-        let least = a.splat(kernel.least_square());
+        let least = a.splat(kernel.min_square());
         let among = pass.among();
         let first_group = cloud.group_at(among.start);
         for block in lists.table.of_rows(&(first..first + out.len())) {
@@ -47,12 +47,12 @@ impl<const R: usize, const S: usize, P: RowPass<R, S>> BlockLoop for RowPassBloc
                     let other = &packed[j as usize];
                     let x = own.to(a, other, &unit).x;
                     let square = dot(a, &x, &x);
-                    let distance = a.sqrt(a.larger(square, least));
+                    let distance = a.sqrt(a.max(square, least));
                     // Neither what is beyond the support nor the particle itself.
                     let near_volume = a.where_below(square, limit, a.same(other.volume));
                     let mut volume = a.where_below(Lanes8::ZERO, square, near_volume);
                     if *hides {
-                        volume = a.times(volume, SEEN[usize::from(seen[n])]);
+                        volume = a.mul(volume, SEEN[usize::from(seen[n])]);
                     }
                     let pairs = NearPairs {
                         group,

@@ -2,9 +2,9 @@
 
 use super::group::{Group, Role};
 
-/// Least kinematic viscosity, in units of c_0 h, at which friction is corrected by the spin: below it a flow
-/// has other losses.
-const LEAST: f64 = 1e-4;
+/// Minimum kinematic viscosity, in units of c_0 h, at which friction is corrected by the spin: below it a
+/// flow has other losses.
+const MIN_VISCOSITY: f64 = 1e-4;
 
 /// Friction that goes into the sums of a loop: none, without spins, and corrected by these.
 pub const NONE: u8 = 0;
@@ -27,7 +27,9 @@ impl Viscosities {
     pub fn new(groups: &[Group], h: f64) -> Self {
         let of = |a: &Group| groups.iter().map(|b| between(&a.role, &b.role)).collect::<Vec<f64>>();
         let viscous = |group: &Group| {
-            group.fluid().is_some_and(|state| state.viscosity > LEAST * state.density * state.sound_speed * h)
+            group
+                .fluid()
+                .is_some_and(|state| state.viscosity > MIN_VISCOSITY * state.density * state.sound_speed * h)
         };
         Self {
             values: groups.iter().flat_map(of).collect(),

@@ -70,7 +70,7 @@ impl Particles<'_> {
                 sum.kinetic += mass * kick.dot(before + 0.5 * kick);
                 sum.constraints -= (late * constrained(mobility)).dot(before);
                 rows.velocity[k].0 += kick;
-                self.take_up(i, k, before + 0.5 * kick, &mut rows, &mut sum);
+                self.replace_force(i, k, before + 0.5 * kick, &mut rows, &mut sum);
             }
             sum
         })
@@ -84,7 +84,7 @@ impl Particles<'_> {
         rates.filter(|(k, _)| moves(*k)).map(|(_, (drag, mass))| SHARED * drag / mass.0).fold(0.0, f64::max)
     }
 
-    /// Least density of a particle of the body that the flow acts on, kg/m3.
+    /// Minimum density of a particle of the body that the flow acts on, kg/m3.
     pub fn lightest(&self) -> Option<f64> {
         let rows = self.records.iter().zip(self.mass).zip(self.total);
         let wet = rows.filter(|((record, _), force)| record.volume() > 0.0 && force.0 != DVec3::ZERO);
@@ -113,7 +113,14 @@ impl Particles<'_> {
 
     /// Puts the force of now in the place of the frozen one, and books the work of both; `velocity` is the
     /// mean of those before and after the impulse.
-    fn take_up(&self, i: usize, k: usize, velocity: DVec3, rows: &mut ParticleRows<'_>, sum: &mut Exchange) {
+    fn replace_force(
+        &self,
+        i: usize,
+        k: usize,
+        velocity: DVec3,
+        rows: &mut ParticleRows<'_>,
+        sum: &mut Exchange,
+    ) {
         let (total, [friction, pressure]) = self.force_now(i);
         let moved = self.before.get(i).map_or(DVec3::ZERO, |before| self.records[i].position() - *before);
         let late = 0.5 * self.dt * velocity;
@@ -156,7 +163,7 @@ pub fn give_to_rigid_body(
         let before = rows.velocity[i].0;
         let after = body.velocity_at(particles.records[i].position());
         rows.velocity[i].0 = after;
-        particles.take_up(i, i, 0.5 * (before + after), &mut rows, &mut sum);
+        particles.replace_force(i, i, 0.5 * (before + after), &mut rows, &mut sum);
     }
     sum
 }

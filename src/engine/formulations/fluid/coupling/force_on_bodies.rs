@@ -153,7 +153,7 @@ impl Coupling {
             moments.add(cloud, group, to, parts_to);
             cloud.repel(group, to, parts_to);
             cloud.press_gaps(group, to, parts_to);
-            cloud.lean_on_edges(group, to, parts_to);
+            cloud.add_edge_forces(group, to, parts_to);
             cloud.let_go(group, to);
             if side == 0 {
                 self.drag.clear();

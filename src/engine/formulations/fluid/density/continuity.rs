@@ -145,7 +145,7 @@ impl HotLoop for AdvanceDensity<'_> {
             let shift = shift.map_or(0.0, |shift| 0.5 * shift[first + k].0);
             let half = -0.5 * dt * compression[k];
             let before = rho.0 + by_terms + shift;
-            let after = a.mul_add(before, half, before) / (1.0 - half);
+            let after = a.scalar_mul_add(before, half, before) / (1.0 - half);
             if shift != 0.0 {
                 change.shifted += mass[k].0
                     * (state.released(before - shift, before) + state.released(after, after + shift));
@@ -166,7 +166,7 @@ impl HotLoop for AdvanceDensity<'_> {
             least = if rho.0 < least { rho.0 } else { least };
             sum += rho.0;
         }
-        // What is no number does not show in the least.
+        // What is no number does not show in the minimum.
         if !(least > 0.0 && sum.is_finite()) {
             let is_good = |rho: &Density| rho.0 > 0.0 && rho.0.is_finite();
             change.broken = density.iter().position(|rho| !is_good(rho)).map_or(0, |k| first + k + 1);

@@ -11,7 +11,7 @@ use crate::formulations::fluid::cloud::{FluidState, Group, Role};
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::notation::quantity;
 use crate::parallel::{BlockSum, sum_over_own_blocks};
-use crate::schedule::{Step, StepError, warn_anew};
+use crate::schedule::{Step, StepError, replace_warning};
 
 /// Speed of the flow over that of sound that is worth a warning: twice the one that a speed of sound is
 /// chosen for. The density then changes by 4 %.
@@ -143,7 +143,7 @@ impl Mach {
             100.0 * mach * mach,
             10.0 * speed
         );
-        warn_anew(step.warnings, &begin, text);
+        replace_warning(step.warnings, &begin, text);
         self.told = mach;
         Ok(())
     }

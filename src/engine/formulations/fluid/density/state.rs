@@ -138,8 +138,8 @@ impl HotLoop for Apply<'_> {
             let [x, y, z, _] = record.motion.0;
             let (x, y, z) = (x - self.frame.x, y - self.frame.y, z - self.frame.z);
             record.motion.0[3] = p;
-            sum.energy = a.mul_add(mass[k].0, eos.energy(rho, rho_0, sound_speed), sum.energy);
-            let square = a.mul_add(x, x, a.mul_add(y, y, z * z));
+            sum.energy = a.scalar_mul_add(mass[k].0, eos.energy(rho, rho_0, sound_speed), sum.energy);
+            let square = a.scalar_mul_add(x, x, a.scalar_mul_add(y, y, z * z));
             sum.speed_squared = if square > sum.speed_squared { square } else { sum.speed_squared };
         }
         if let Some(packed) = self.packed {

@@ -89,20 +89,20 @@ impl FluidKernel {
     #[inline(always)]
     pub(in crate::formulations::fluid) fn shapes<A: Arithmetic>(&self, a: A, r: A::Lanes) -> A::Lanes {
         let s = a.max_zero(a.scale_add(-self.inverse_support, r, a.splat(1.0)));
-        let square = a.times(s, s);
-        let cube = a.times(square, s);
+        let square = a.mul(s, s);
+        let cube = a.mul(square, s);
         let q = a.scale(self.inverse_support, r);
         let one = a.splat(1.0);
         match self.shape {
             KernelShape::WendlandC2 => cube,
-            KernelShape::WendlandC4 => a.times(a.times(cube, square), a.scale_add(5.0, q, one)),
+            KernelShape::WendlandC4 => a.mul(a.mul(cube, square), a.scale_add(5.0, q, one)),
             KernelShape::WendlandC6 => {
                 let slope = a.scale_add(16.0, q, a.splat(7.0));
-                a.times(a.times(a.times(cube, square), square), a.times_add(q, slope, one))
+                a.mul(a.mul(a.mul(cube, square), square), a.mul_add(q, slope, one))
             }
             KernelShape::QuinticSpline => {
-                let above_zero = a.larger(q, a.splat(LEAST_LENGTH));
-                a.scale(QUINTIC_WEIGHT, a.over(spline::<A, 4>(a, q), above_zero))
+                let above_zero = a.max(q, a.splat(MIN_LENGTH));
+                a.scale(QUINTIC_WEIGHT, a.div(spline::<A, 4>(a, q), above_zero))
             }
         }
     }
@@ -127,19 +127,19 @@ impl FluidKernel {
     #[inline(always)]
     pub fn values<A: Arithmetic>(&self, a: A, r: A::Lanes) -> A::Lanes {
         let s = a.max_zero(a.scale_add(-self.inverse_support, r, a.splat(1.0)));
-        let square = a.times(s, s);
-        let fourth = a.times(square, square);
+        let square = a.mul(s, s);
+        let fourth = a.mul(square, square);
         let one = a.splat(1.0);
         let q = a.scale(self.inverse_support, r);
         let shape = match self.shape {
-            KernelShape::WendlandC2 => a.times(fourth, a.scale_add(4.0 * self.inverse_support, r, one)),
+            KernelShape::WendlandC2 => a.mul(fourth, a.scale_add(4.0 * self.inverse_support, r, one)),
             KernelShape::WendlandC4 => {
                 let slope = a.scale_add(35.0 / 3.0, q, a.splat(6.0));
-                a.times(a.times(fourth, square), a.times_add(q, slope, one))
+                a.mul(a.mul(fourth, square), a.mul_add(q, slope, one))
             }
             KernelShape::WendlandC6 => {
-                let slope = a.times_add(q, a.scale_add(32.0, q, a.splat(25.0)), a.splat(8.0));
-                a.times(a.times(fourth, fourth), a.times_add(q, slope, one))
+                let slope = a.mul_add(q, a.scale_add(32.0, q, a.splat(25.0)), a.splat(8.0));
+                a.mul(a.mul(fourth, fourth), a.mul_add(q, slope, one))
             }
             KernelShape::QuinticSpline => a.scale(1.0 / 66.0, spline::<A, 5>(a, q)),
         };
@@ -159,12 +159,12 @@ impl FluidKernel {
         let limit = self.support * self.support;
         let square = a.scale_add(limit, fill, square);
         let volume = a.where_below(square, a.splat(limit), volume);
-        (a.larger(square, a.splat(self.least_square())), volume)
+        (a.max(square, a.splat(self.min_square())), volume)
     }
 
     /// Square of the length of pairs in one place, m2: one may divide by it.
     #[inline(always)]
-    pub(in crate::formulations::fluid) fn least_square(&self) -> f64 {
+    pub(in crate::formulations::fluid) fn min_square(&self) -> f64 {
         NO_LENGTH * self.support * self.support
     }
 
@@ -215,7 +215,7 @@ impl PairShape for WendlandC2Lanes {
     #[inline(always)]
     fn shape<A: Arithmetic>(self, a: A, r: A::Lanes) -> A::Lanes {
         let s = a.max_zero(a.scale_add(self.slope, r, a.splat(1.0)));
-        a.times(a.times(s, s), s)
+        a.mul(a.mul(s, s), s)
     }
 }
 
@@ -234,8 +234,8 @@ pub trait KernelLoop {
     fn run<K: PairShape>(self, kernel: K) -> Self::Output;
 }
 
-/// Least length that a weight is divided by, over the support: a pair in one place has a weight too.
-const LEAST_LENGTH: f64 = 1e-12;
+/// Minimum length that a weight is divided by, over the support: a pair in one place has a weight too.
+const MIN_LENGTH: f64 = 1e-12;
 
 /// Factor of the fourth powers over q = r/H in the pair weight of the quintic spline, which is one at q = 0.
 const QUINTIC_WEIGHT: f64 = 1.0 / 72.0;
@@ -245,9 +245,9 @@ const QUINTIC_WEIGHT: f64 = 1.0 / 72.0;
 fn spline<A: Arithmetic, const N: usize>(a: A, q: A::Lanes) -> A::Lanes {
     let power = |knot: f64| {
         let s = a.max_zero(a.scale_add(-3.0, q, a.splat(knot)));
-        let square = a.times(s, s);
-        let fourth = a.times(square, square);
-        if N == 5 { a.times(fourth, s) } else { fourth }
+        let square = a.mul(s, s);
+        let fourth = a.mul(square, square);
+        if N == 5 { a.mul(fourth, s) } else { fourth }
     };
     a.scale_add(15.0, power(1.0), a.scale_add(-6.0, power(2.0), power(3.0)))
 }

@@ -69,7 +69,7 @@ impl Periods {
     #[inline(always)]
     fn nearest<A: FourLanes>(&self, a: A, axis: usize, x: Lanes4) -> Lanes4 {
         let shift = Lanes4::splat(SHIFT);
-        let turns = a.minus(a.scale_add(self.inverse[axis], x, shift), shift);
+        let turns = a.sub(a.scale_add(self.inverse[axis], x, shift), shift);
         a.scale_add(-self.length[axis], turns, x)
     }
 }
@@ -168,7 +168,7 @@ impl FourPlaces {
         let place = a.transpose([records[j].place, records[k].place, records[l].place, records[m].place]);
         let mut x = [Lanes4::ZERO; 3];
         for axis in 0..A::AXES {
-            x[axis] = a.minus(place[axis], Lanes4::splat(own.place.0[axis]));
+            x[axis] = a.sub(place[axis], Lanes4::splat(own.place.0[axis]));
         }
         if periods.any() {
             for axis in 0..A::AXES {
@@ -195,8 +195,8 @@ impl<const D: usize> Four<D> {
         let mut x = [Lanes4::ZERO; D];
         let mut v = [Lanes4::ZERO; D];
         for axis in 0..D {
-            x[axis] = a.minus(place[axis], own.x[axis]);
-            v[axis] = a.minus(motion[axis], own.v[axis]);
+            x[axis] = a.sub(place[axis], own.x[axis]);
+            v[axis] = a.sub(motion[axis], own.v[axis]);
             if P {
                 x[axis] = periods.nearest(a, axis, x[axis]);
             }
@@ -208,9 +208,9 @@ impl<const D: usize> Four<D> {
 /// Scalar products of four pairs of vectors.
 #[inline(always)]
 pub fn dot<A: FourLanes, const D: usize>(a: A, b: &[Lanes4; D], c: &[Lanes4; D]) -> Lanes4 {
-    let mut sum = a.times(b[0], c[0]);
+    let mut sum = a.mul(b[0], c[0]);
     for k in 1..D {
-        sum = a.times_add(b[k], c[k], sum);
+        sum = a.mul_add(b[k], c[k], sum);
     }
     sum
 }

@@ -40,10 +40,10 @@ impl DisplacementBounds {
     /// The box around two boxes.
     #[inline(always)]
     pub fn with(self, other: Self) -> Self {
-        Self { low: smaller(self.low, other.low), high: larger(self.high, other.high) }
+        Self { low: lane_min(self.low, other.low), high: lane_max(self.high, other.high) }
     }
 
-    /// Most that a displacement of one box and one of the other differ, m; zero where one has none.
+    /// Maximum distance between a displacement of one box and one of the other, m; zero if one has none.
     pub fn farthest(self, other: Self) -> f64 {
         (self.high.xyz() - other.low.xyz())
             .max(other.high.xyz() - self.low.xyz())
@@ -54,25 +54,25 @@ impl DisplacementBounds {
 
 /// The lanes are written out, as those of [`Lanes4`] are.
 #[inline(always)]
-fn smaller(Lanes4(a): Lanes4, Lanes4(b): Lanes4) -> Lanes4 {
+fn lane_min(Lanes4(a): Lanes4, Lanes4(b): Lanes4) -> Lanes4 {
     let of = |k: usize| if a[k] < b[k] { a[k] } else { b[k] };
     Lanes4([of(0), of(1), of(2), of(3)])
 }
 
 #[inline(always)]
-fn larger(Lanes4(a): Lanes4, Lanes4(b): Lanes4) -> Lanes4 {
+fn lane_max(Lanes4(a): Lanes4, Lanes4(b): Lanes4) -> Lanes4 {
     let of = |k: usize| if a[k] > b[k] { a[k] } else { b[k] };
     Lanes4([of(0), of(1), of(2), of(3)])
 }
 
 /// A spread that grows by one displacement after the other.
 #[derive(Clone, Copy)]
-pub struct Growing {
+pub struct BoundsBuilder {
     spread: DisplacementBounds,
     sum: Lanes4,
 }
 
-impl Growing {
+impl BoundsBuilder {
     #[inline(always)]
     pub fn new() -> Self {
         Self { spread: DisplacementBounds::NONE, sum: Lanes4::ZERO }
@@ -81,10 +81,10 @@ impl Growing {
     /// Adds a displacement; the fourth lane matters to [`DisplacementBounds::is_zero`] alone.
     #[inline(always)]
     pub fn add<A: FourLanes>(&mut self, a: A, d: Lanes4) {
-        self.spread.low = a.smaller(d, self.spread.low);
-        self.spread.high = a.larger(d, self.spread.high);
+        self.spread.low = a.min(d, self.spread.low);
+        self.spread.high = a.max(d, self.spread.high);
         // What is no number does not show in the box.
-        self.sum = a.plus(self.sum, d);
+        self.sum = a.add(self.sum, d);
     }
 
     /// The spread, as large as can be where a displacement was no number.

@@ -11,7 +11,7 @@ use std::ops::Range;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::displacement_bounds::{DisplacementBounds, Growing};
+use super::displacement_bounds::{BoundsBuilder, DisplacementBounds};
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::neighbors::{Buckets, CellBlock, Periodic, SHIFT, sort_into_cells};
 use crate::parallel::{FourLanes, HotLoop, Lanes4, run_hot, sum_over_blocks};
@@ -61,7 +61,7 @@ pub struct Drift {
     grid: CellBlock,
     /// Periods of the axes along which the grid repeats, m, and one over them; zero on the others.
     periods: [Lanes4; 2],
-    /// Least length of a cell, m.
+    /// Minimum length of a cell, m.
     length: f64,
     /// The particles of each cell, ascending.
     cells: Buckets,
@@ -174,12 +174,12 @@ impl HotLoop for Moved<'_> {
     fn run<A: FourLanes>(self, a: A) -> DisplacementBounds {
         let [period, inverse] = *self.periods;
         let shift = Lanes4::splat(SHIFT);
-        let mut moved = Growing::new();
+        let mut moved = BoundsBuilder::new();
         for (&row, then) in self.rows.iter().zip(self.then) {
-            let x = a.minus(self.records[row as usize].place, *then);
+            let x = a.sub(self.records[row as usize].place, *then);
             // To the nearest periodic image.
-            let turns = a.minus(a.times_add(x, inverse, shift), shift);
-            moved.add(a, a.minus(x, a.times(period, turns)));
+            let turns = a.sub(a.mul_add(x, inverse, shift), shift);
+            moved.add(a, a.sub(x, a.mul(period, turns)));
         }
         moved.end()
     }

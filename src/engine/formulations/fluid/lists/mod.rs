@@ -16,7 +16,7 @@ mod gaps;
 
 mod pairs;
 
-pub use displacement_bounds::{DisplacementBounds, Growing};
+pub use displacement_bounds::{BoundsBuilder, DisplacementBounds};
 pub use drift::Skins;
 pub use gaps::{GapPairs, GapSide, SideMotion};
 pub use near_rows::{NearRow, NearRows, NearWriter};

@@ -8,10 +8,10 @@ use std::ops::Range;
 use crate::neighbors::NeighborList;
 use crate::parallel::{FourLanes, Split};
 
-/// Rows of neighbours, each in the room that its rows in the lists ask for.
+/// Rows of neighbours, each in the slots that its rows in the lists ask for.
 #[derive(Debug, Default)]
 pub struct NearRows {
-    /// Where the room of each row starts, and the end of the last.
+    /// Where the slots of each row start, and the end of the last.
     starts: Vec<usize>,
     counts: Vec<u32>,
     indices: Vec<u32>,
@@ -20,8 +20,8 @@ pub struct NearRows {
 }
 
 impl NearRows {
-    /// Makes room for the rows of these lists together.
-    pub fn make_room(&mut self, lists: &[&NeighborList]) {
+    /// Allocates memory for the rows of these lists together.
+    pub fn allocate(&mut self, lists: &[&NeighborList]) {
         let rows = lists[0].rows();
         self.starts.clear();
         // Four are written at once.
@@ -31,8 +31,8 @@ impl NearRows {
         self.indices.resize(self.starts[rows], 0);
     }
 
-    /// Makes room for that many neighbours of each of some rows.
-    pub fn make_room_for(&mut self, rows: usize, most: impl Fn(usize) -> usize) {
+    /// Allocates memory for that many neighbours of each of some rows.
+    pub fn allocate_rows(&mut self, rows: usize, most: impl Fn(usize) -> usize) {
         self.starts.clear();
         self.starts.push(0);
         let mut end = 0;
@@ -44,7 +44,7 @@ impl NearRows {
         self.indices.resize(end, 0);
     }
 
-    /// Keeps bits for each neighbour, once there is room for these.
+    /// Keeps bits for each neighbour, once there is memory for these.
     pub fn keep_lanes(&mut self) {
         self.lanes.resize(self.indices.len(), 0);
     }
@@ -141,13 +141,13 @@ impl NearWriter<'_> {
         let first = self.starts[0];
         let part = self.starts[k] - first..self.starts[k + 1] - first;
         let lanes = if self.lanes.is_empty() { &mut [][..] } else { &mut self.lanes[part.clone()] };
-        NearRow { room: &mut self.indices[part], lanes, used: 0, count: &mut self.counts[k] }
+        NearRow { slots: &mut self.indices[part], lanes, used: 0, count: &mut self.counts[k] }
     }
 }
 
 /// A row that is written.
 pub struct NearRow<'a> {
-    room: &'a mut [u32],
+    slots: &'a mut [u32],
     lanes: &'a mut [u8],
     used: usize,
     count: &'a mut u32,
@@ -157,7 +157,7 @@ impl<'a> NearRow<'a> {
     /// Appends those of four rows whose bits are set.
     #[inline(always)]
     pub fn push<A: FourLanes>(&mut self, a: A, four: [u32; 4], bits: usize) {
-        if let Some(out) = self.room[self.used..].first_chunk_mut() {
+        if let Some(out) = self.slots[self.used..].first_chunk_mut() {
             *out = a.pack(four, bits);
         }
         self.used += bits.count_ones() as usize;
@@ -167,7 +167,7 @@ impl<'a> NearRow<'a> {
     /// branch.
     #[inline(always)]
     pub fn push_if<const LANES: bool>(&mut self, j: u32, bits: usize) {
-        if let Some(out) = self.room.get_mut(self.used) {
+        if let Some(out) = self.slots.get_mut(self.used) {
             *out = j;
         }
         if LANES && let Some(out) = self.lanes.get_mut(self.used) {
@@ -180,6 +180,6 @@ impl<'a> NearRow<'a> {
     #[inline(always)]
     pub fn close(self) -> &'a [u32] {
         *self.count = self.used as u32;
-        &self.room[..self.used]
+        &self.slots[..self.used]
     }
 }

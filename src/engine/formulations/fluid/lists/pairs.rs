@@ -111,7 +111,7 @@ impl FlowPairs {
     /// Whether a pair may be missing in the lists, or they never were built; the first `fluid` records are
     /// those of the fluid. `moved` says how far particles have moved since the question was last asked.
     pub fn are_stale(&mut self, records: &[FlowParticle], fluid: usize, moved: DisplacementBounds) -> bool {
-        // Looking is needed when the particles may have used up the room that they had when it was last
+        // Looking is needed when the particles may have used up the margin that they had when it was last
         // looked.
         self.remaining_skin -= moved.farthest(moved);
         if self.remaining_skin <= CERTAIN * self.skins.support {

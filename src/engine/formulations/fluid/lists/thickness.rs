@@ -14,12 +14,12 @@ const FULL: f64 = 0.9;
 
 /// Where a body is thinner than the support.
 pub struct Thin {
-    /// Least thickness, m.
-    pub least: f64,
+    /// Minimum thickness, m.
+    pub thickness: f64,
     /// Where that is, m.
     pub at: DVec3,
     /// Whether it is more than edges and fins.
-    pub is_most: bool,
+    pub is_widespread: bool,
 }
 
 /// The thickness of a body at its particles.
@@ -68,10 +68,10 @@ impl Thickness {
     /// supports.
     pub fn thin(&self, edges: usize) -> Option<Thin> {
         let thin = || (0..self.positions.len()).filter(|&i| self.is_thin(i));
-        let least = thin().min_by(|&a, &b| self.values[a].total_cmp(&self.values[b]))?;
-        let is_most = thin().count() as f64 > THIN_SHARE * self.positions.len() as f64;
-        let found = Thin { least: self.values[least], at: self.positions[least], is_most };
-        (is_most || self.has_fins(edges)).then_some(found)
+        let thinnest = thin().min_by(|&a, &b| self.values[a].total_cmp(&self.values[b]))?;
+        let is_widespread = thin().count() as f64 > THIN_SHARE * self.positions.len() as f64;
+        let found = Thin { thickness: self.values[thinnest], at: self.positions[thinnest], is_widespread };
+        (is_widespread || self.has_fins(edges)).then_some(found)
     }
 
     /// Whether a thin part ends farther from the thick part than that many supports: one is that of a fin or
@@ -116,7 +116,7 @@ impl Thickness {
     }
 }
 
-/// Axes along which some vectors spread, the least one first; in a plane that of z last.
+/// Axes along which some vectors spread, the smallest one first; in a plane that of z last.
 pub fn axes(vectors: impl Iterator<Item = DVec3>, plane: bool) -> DMat3 {
     let spread = vectors.fold(Sym3::ZERO, |sum, x| sum + Sym3::dyad(x));
     // In a plane the third axis has no spread: it is not a side of the body.
@@ -156,7 +156,10 @@ mod tests {
                 assert_eq!(is_thin, place.y < 0.0, "{place}");
             }
         }
-        assert!(boat.thin(1).is_some_and(|thin| (thin.least - 4.0).abs() < 0.5), "a keel of 3.5 supports");
+        assert!(
+            boat.thin(1).is_some_and(|thin| (thin.thickness - 4.0).abs() < 0.5),
+            "a keel of 3.5 supports"
+        );
         assert!(of("Box(min: (-24, 0), max: (24, 16))").thin(1).is_none(), "a hull alone");
         assert!(
             of("Polygon(points: [(0, 0), (40, 23), (-40, 23)])").thin(1).is_none(),

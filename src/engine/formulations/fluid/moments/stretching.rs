@@ -17,7 +17,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use crate::formulations::fluid::cloud::{FlowCloud, Group, LEAST_SHARE, part};
+use crate::formulations::fluid::cloud::{FlowCloud, Group, MIN_SHARE, part};
 use crate::formulations::fluid::rotation::affine;
 use crate::linalg::Sym3;
 use crate::parallel::for_each_block;
@@ -139,7 +139,7 @@ impl FlowCloud {
                 rate += volume * self.kernel.weight(distance) * x.dot(*stretch * x);
             }
         }
-        if total > LEAST_SHARE { rate / total } else { 0.0 }
+        if total > MIN_SHARE { rate / total } else { 0.0 }
     }
 }
 

@@ -84,7 +84,7 @@ impl CompressionRows<'_> {
         let FlowCloud { records, pairs: lists, kernel, .. } = self.cloud;
         let kernel = *kernel;
         let mut batch = Batch::EMPTY;
-        let reach = Lanes4::splat(self.cloud.reach * self.cloud.reach);
+        let range = Lanes4::splat(self.cloud.repulsion_range * self.cloud.repulsion_range);
         for (k, out) in self.out.iter_mut().enumerate() {
             let i = self.first + k;
             let own = OwnRecord::<D>::new(&records[i]);
@@ -94,7 +94,7 @@ impl CompressionRows<'_> {
             let sum = pairs.add::<A, P>(a, lists.fluid.row(i), &mut near, Lanes4::ZERO, None);
             let sum = pairs.add::<A, P>(a, lists.walls.row(i), &mut near, sum, Some(&mut least));
             near.close();
-            self.is_close[k] = (a.below(least, reach) != 0).into();
+            self.is_close[k] = (a.below(least, range) != 0).into();
             *out = a.scale(kernel.weight_scale(), sum).sum();
         }
     }
@@ -129,14 +129,14 @@ impl<const D: usize> ListPairs<'_, D> {
             }
             for k in done..end {
                 let (square, factor) = self.batch.get(k);
-                sum = a.times_add(self.kernel.shapes(a, a.sqrt(square)), factor, sum);
+                sum = a.mul_add(self.kernel.shapes(a, a.sqrt(square)), factor, sum);
             }
             done = end;
         }
         if !rest.is_empty() {
             let (square, factor) = self.four::<A, P>(a, filled_up(rest), rest.len(), near, least);
-            let factor = a.times(factor, MASKS[rest.len()]);
-            sum = a.times_add(self.kernel.shapes(a, a.sqrt(square)), factor, sum);
+            let factor = a.mul(factor, MASKS[rest.len()]);
+            sum = a.mul_add(self.kernel.shapes(a, a.sqrt(square)), factor, sum);
         }
         sum
     }
@@ -156,7 +156,7 @@ impl<const D: usize> ListPairs<'_, D> {
         let limit = Lanes4::splat(kernel.support * kernel.support);
         let square = dot(a, &four.x, &four.x);
         if let Some(least) = least {
-            *least = a.smaller(square, *least);
+            *least = a.min(square, *least);
         }
         let within = a.below(square, limit) & ((1 << count) - 1);
         near.push(a, rows, within);
@@ -164,6 +164,6 @@ impl<const D: usize> ListPairs<'_, D> {
         for axis in 0..D {
             x[axis] = a.scale_add(*back, four.v[axis], x[axis]);
         }
-        (dot(a, &x, &x), a.times(four.volume, dot(a, &four.v, &x)))
+        (dot(a, &x, &x), a.mul(four.volume, dot(a, &four.v, &x)))
     }
 }

@@ -66,7 +66,7 @@ impl Run for FlowForce {
             self.moments.add(&cloud, group, total, forces);
             cloud.repel(group, total, forces);
             cloud.press_gaps(group, total, forces);
-            cloud.lean_on_edges(group, total, forces);
+            cloud.add_edge_forces(group, total, forces);
             cloud.let_go(group, total);
             if let Some(gravity) = self.gravity {
                 let rows = (&mut *total, &mass[group.rows.clone()], &removed[group.rows.clone()]);

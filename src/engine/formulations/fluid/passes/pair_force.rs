@@ -195,8 +195,8 @@ impl<'a> RowConstants<'a> {
                     if other.cloud.start == group.cloud.start && own.volume() > 0.0 =>
                 {
                     is_in_batch = true;
-                    let room = batch.add_row(own.volume(), row.len());
-                    pairs.add_and_keep::<A, P>(a, room, terms.reads.kernel, &mut forces);
+                    let slots = batch.add_row(own.volume(), row.len());
+                    pairs.add_and_keep::<A, P>(a, slots, terms.reads.kernel, &mut forces);
                 }
                 _ => {
                     let between = Between::of(is_fluid, other.fluid().is_some());

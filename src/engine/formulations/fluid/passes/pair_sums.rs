@@ -40,20 +40,17 @@ impl<const D: usize> Forces<D> {
         viscosity: f64,
         turning: &[Lanes4; D],
     ) {
-        let weight = a.times(*weight, *volume_j);
-        let pressure = a.times(weight, *pressure);
+        let weight = a.mul(*weight, *volume_j);
+        let pressure = a.mul(weight, *pressure);
         for axis in 0..D {
-            self.pressure[axis] = a.times_add(pressure, current.vector[axis], self.pressure[axis]);
+            self.pressure[axis] = a.mul_add(pressure, current.vector[axis], self.pressure[axis]);
         }
         if FRICTION != NONE {
             let friction = a.scale(viscosity, weight);
             for axis in 0..D {
-                let relative = if FRICTION == WITH_SPIN {
-                    a.minus(velocity[axis], turning[axis])
-                } else {
-                    velocity[axis]
-                };
-                self.viscous[axis] = a.times_add(friction, relative, self.viscous[axis]);
+                let relative =
+                    if FRICTION == WITH_SPIN { a.sub(velocity[axis], turning[axis]) } else { velocity[axis] };
+                self.viscous[axis] = a.mul_add(friction, relative, self.viscous[axis]);
             }
         }
     }
@@ -123,13 +120,13 @@ impl<const D: usize> PairsOfRow<'_, D> {
             }
             for axis in 0..D {
                 let (n, o) = ((axis + 1) % 3, (axis + 2) % 3);
-                turning[axis] = a.minus(a.times(omega[n], x[o]), a.times(omega[o], x[n]));
+                turning[axis] = a.sub(a.mul(omega[n], x[o]), a.mul(omega[o], x[n]));
             }
         } else {
             let others = Lanes4([spins[j].0[2], spins[k].0[2], spins[l].0[2], spins[m].0[2]]);
             let omega = a.scale_add(share, others, Lanes4::splat(own[2]));
-            turning[0] = a.scale(-1.0, a.times(omega, x[1]));
-            turning[1] = a.times(omega, x[0]);
+            turning[0] = a.scale(-1.0, a.mul(omega, x[1]));
+            turning[1] = a.mul(omega, x[0]);
         }
         turning
     }
@@ -165,37 +162,37 @@ impl<const D: usize> PairsOfRow<'_, D> {
             let Self { cloud: FlowCloud { records, periods, .. }, kernel, own, .. } = self;
             let four = Four::<D>::gather::<A, P>(a, records, own, as_rows(rows), periods);
             let distance = a.sqrt(dot(a, &four.x, &four.x));
-            let weight = a.times(kernel.weights(a, distance), a.times(four.volume, MASKS[count]));
-            let weight_j = a.times(weight, four.pressure);
+            let weight = a.mul(kernel.weights(a, distance), a.mul(four.volume, MASKS[count]));
+            let weight_j = a.mul(weight, four.pressure);
             let friction = a.scale(self.viscosity, weight);
             let mut relative = four.v;
             if FRICTION == WITH_SPIN {
                 let turning = self.turning(a, spin, as_rows(rows), &four.x);
                 for axis in 0..D {
-                    relative[axis] = a.minus(four.v[axis], turning[axis]);
+                    relative[axis] = a.sub(four.v[axis], turning[axis]);
                 }
             }
             for axis in 0..D {
-                gradient[axis] = a.times_add(weight, four.x[axis], gradient[axis]);
-                of_j[axis] = a.times_add(weight_j, four.x[axis], of_j[axis]);
+                gradient[axis] = a.mul_add(weight, four.x[axis], gradient[axis]);
+                of_j[axis] = a.mul_add(weight_j, four.x[axis], of_j[axis]);
                 if FRICTION != NONE {
-                    viscous[axis] = a.times_add(friction, relative[axis], viscous[axis]);
+                    viscous[axis] = a.mul_add(friction, relative[axis], viscous[axis]);
                 }
             }
         }
         for axis in 0..D {
-            let of_i = a.times(gradient[axis], self.own.pressure);
+            let of_i = a.mul(gradient[axis], self.own.pressure);
             let (of_fluid, of_wall) = match between {
-                Between::Fluids => (a.plus(of_i, of_j[axis]), Lanes4::ZERO),
+                Between::Fluids => (a.add(of_i, of_j[axis]), Lanes4::ZERO),
                 Between::FluidAndBoundary => (of_i, of_j[axis]),
                 Between::BoundaryAndFluid => (of_j[axis], of_i),
             };
-            pressure[axis] = a.plus(pressure[axis], of_fluid);
-            wall[axis] = a.plus(wall[axis], of_wall);
+            pressure[axis] = a.add(pressure[axis], of_fluid);
+            wall[axis] = a.add(wall[axis], of_wall);
         }
     }
 
-    /// The same between fluids, and puts the geometry of the pairs into `room`.
+    /// The same between fluids, and puts the geometry of the pairs into `slots`.
     ///
     /// Two loops: in one, a neighbour takes some ninety cycles from its index to its sum, and a processor
     /// looks ahead two or three fours. Taken apart, one gathers and one takes roots, each with short chains
@@ -217,7 +214,7 @@ impl<const D: usize> PairsOfRow<'_, D> {
         if !rest.is_empty() {
             rows[full] = filled_up(rest);
             self.gather::<A, P>(a, rows[full], &mut pairs[full]);
-            pairs[full].volume_j = a.times(pairs[full].volume_j, MASKS[rest.len()]);
+            pairs[full].volume_j = a.mul(pairs[full].volume_j, MASKS[rest.len()]);
         }
         match self.friction() {
             NONE => self.weigh::<A, NONE>(a, pairs, rows, forces),
@@ -231,8 +228,8 @@ impl<const D: usize> PairsOfRow<'_, D> {
         }
         if !rest.is_empty() {
             let (last, mask) = (&mut pairs[full], MASKS[rest.len()]);
-            last.weight = a.times(last.weight, mask);
-            last.kernel = a.times(last.kernel, mask);
+            last.weight = a.mul(last.weight, mask);
+            last.kernel = a.mul(last.kernel, mask);
         }
     }
 
@@ -247,7 +244,7 @@ impl<const D: usize> PairsOfRow<'_, D> {
         }
         kept.current.length = dot(a, &four.x, &four.x);
         kept.volume_j = four.volume;
-        kept.kept = a.plus(four.pressure, own.pressure);
+        kept.kept = a.add(four.pressure, own.pressure);
     }
 
     /// Takes roots, and adds up the forces.
@@ -259,11 +256,11 @@ impl<const D: usize> PairsOfRow<'_, D> {
         rows: &[[u32; 4]],
         forces: &mut Forces<D>,
     ) {
-        let least = Lanes4::splat(self.kernel.least_square());
+        let least = Lanes4::splat(self.kernel.min_square());
         let spin = self.pair_spin(Between::Fluids);
         for k in 0..pairs.len() {
             let four = &mut pairs[k];
-            let distance = a.sqrt(a.larger(four.current.length, least));
+            let distance = a.sqrt(a.max(four.current.length, least));
             let weight = self.kernel.weights(a, distance);
             four.current.length = distance;
             four.weight = weight;

@@ -19,7 +19,7 @@ impl FlowCloud {
             SurfaceMoments::default().add(self, group, &mut total, &mut parts);
             self.repel(group, &mut total, &mut parts);
             self.press_gaps(group, &mut total, &mut parts);
-            self.lean_on_edges(group, &mut total, &mut parts);
+            self.add_edge_forces(group, &mut total, &mut parts);
             self.let_go(group, &mut total);
             let sum = sum.get_or_insert_with(|| vec![Default::default(); total.len()]);
             for (k, (all, viscous)) in sum.iter_mut().enumerate() {

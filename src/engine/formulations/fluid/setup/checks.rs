@@ -14,7 +14,7 @@ use crate::scene::Problem;
 /// Depth of the edges of walls that fluids may see through, in supports: those of 20 degrees or more.
 const EDGES: usize = 2;
 /// Largest relative change of the density at the start.
-const LARGEST_CHANGE: f64 = 0.1;
+const MAX_CHANGE: f64 = 0.1;
 
 fn fault(body: &BodyPlan, field: &str, message: String, help: &str) -> SetupError {
     let path = format!("bodies[{}].{field}", body.id.0);
@@ -61,7 +61,7 @@ pub fn periods_are_long(periodic: &Periodic, support: f64) -> Result<(), SetupEr
 pub fn sound_is_fast(group: &Group, at: DVec3, p: f64, rho: f64, name: &str) -> Result<(), SetupError> {
     let Some(state) = group.fluid() else { return Ok(()) };
     let change = rho / state.density - 1.0;
-    if change.abs() <= LARGEST_CHANGE {
+    if change.abs() <= MAX_CHANGE {
         return Ok(());
     }
     let message = format!(
@@ -98,19 +98,20 @@ pub fn wall_is_thick(
     periodic: &Periodic,
 ) -> Result<Option<String>, SetupError> {
     is_fine(body, spacing)?;
-    let Some(Thin { least, at, is_most }) = Thickness::of(body, support, periodic)?.thin(EDGES) else {
+    let Some(Thin { thickness, at, is_widespread }) = Thickness::of(body, support, periodic)?.thin(EDGES)
+    else {
         return Ok(None);
     };
     let layers = (support / body.spacing - 1e-9).ceil();
     let message = format!(
         "`{}` is {:.0} layers of particles thick at {}, thinner than the kernel support of the fluid, {}",
         body.name,
-        least / body.spacing,
+        thickness / body.spacing,
         place(at),
         quantity(support, "m")
     );
     let help = format!("make it at least {layers} layers thick, {}", quantity(layers * body.spacing, "m"));
-    if is_most {
+    if is_widespread {
         return Err(fault(body, "shape", message, &help));
     }
     Ok(Some(format!("{message}: fluid on one side acts on that on the other; {help}")))

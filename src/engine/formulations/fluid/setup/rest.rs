@@ -89,7 +89,7 @@ impl RestLines {
         // Every turn leaves one fluid; lines do not come back into one that they have left.
         for _ in 0..=2 * self.layers.len() {
             let layer = &self.layers[k];
-            let length = self.way_out(layer.region.as_deref()?, at, up);
+            let length = self.distance_out(layer.region.as_deref()?, at, up);
             p += layer.density * self.gravity.length() * length;
             let step = BEYOND * self.spacing;
             let beyond = at + (length + step) * up;
@@ -111,7 +111,7 @@ impl RestLines {
     }
 
     /// Length of the line from a point out of a region, m. Where parts of a region meet, it continues.
-    fn way_out(&self, region: &dyn Region, from: DVec3, up: DVec3) -> f64 {
+    fn distance_out(&self, region: &dyn Region, from: DVec3, up: DVec3) -> f64 {
         let (least, step) = (PRECISION * self.spacing, BEYOND * self.spacing);
         let (mut length, most) = (0.0, region.bounds().extent().length());
         while length < most {

@@ -11,7 +11,7 @@ use crate::schedule::{AccountKind, Step, StepError};
 use crate::world::{BodyId, Mass, Removed, Velocity};
 
 /// Largest share of their relative velocities that neighbours lose in a step.
-const LARGEST: f64 = 0.05;
+const MAX_LOSS: f64 = 0.05;
 
 /// Pays back what an account of dissipation has given to a body, where it is below zero: `dv_i = s sum_j V_j
 /// W_ij (v_ij . x_ij) x_ij / r_ij^2` over the body, with s such that the energy is paid, at most 0.05 in a
@@ -19,13 +19,13 @@ const LARGEST: f64 = 0.05;
 /// the stabilizer, so that it is no source of energy.
 #[derive(Debug, Default)]
 pub struct Repayment {
-    rubs: Vec<Rub>,
+    rubs: Vec<UnitFriction>,
     sums: RowSums,
 }
 
 /// Friction of strength one.
 #[derive(Clone, Copy, Debug, Default)]
-struct Rub {
+struct UnitFriction {
     /// Change of velocity, m/s.
     velocity: DVec3,
     /// Energy that it takes, J/kg.
@@ -50,21 +50,21 @@ impl Repayment {
             return Ok(());
         }
         let (view, rows) = step.world.body_view(id);
-        self.rubs.resize(rows.len(), Rub::default());
-        let pass = Rubbing { cloud, rows: rows.clone() };
+        self.rubs.resize(rows.len(), UnitFriction::default());
+        let pass = FrictionPass { cloud, rows: rows.clone() };
         cloud.for_each_row(rows.start, &mut self.rubs, &mut self.sums, &pass);
         let mut velocity = view.write::<Velocity>()?;
         let (mass, removed) = (view.read::<Mass>()?, view.read::<Removed>()?);
         let both = (&self.rubs[..], &mass[rows.clone()]);
-        let taken = sum_over_blocks(both, &|_, (rubs, mass): (&[Rub], &[Mass])| {
+        let taken = sum_over_blocks(both, &|_, (rubs, mass): (&[UnitFriction], &[Mass])| {
             rubs.iter().zip(mass).map(|(rub, m)| m.0 * rub.taken).sum::<f64>()
         });
         if taken <= 0.0 {
             return Ok(());
         }
-        let strength = (owed / taken).min(LARGEST);
+        let strength = (owed / taken).min(MAX_LOSS);
         let slices = (&mut velocity[rows.clone()], &self.rubs[..], &mass[rows.clone()], &removed[rows]);
-        type Rows<'a> = (&'a mut [Velocity], &'a [Rub], &'a [Mass], &'a [Removed]);
+        type Rows<'a> = (&'a mut [Velocity], &'a [UnitFriction], &'a [Mass], &'a [Removed]);
         let lost = sum_over_blocks(slices, &|_, (velocity, rubs, mass, removed): Rows<'_>| {
             let mut lost = 0.0;
             for k in (0..velocity.len()).filter(|&k| removed[k] == Removed::NO) {
@@ -81,13 +81,13 @@ impl Repayment {
 }
 
 /// The pass over the particles of a body.
-struct Rubbing<'a> {
+struct FrictionPass<'a> {
     cloud: &'a FlowCloud,
     rows: Range<usize>,
 }
 
-impl RowPass<1, 2> for Rubbing<'_> {
-    type Output = Rub;
+impl RowPass<1, 2> for FrictionPass<'_> {
+    type Output = UnitFriction;
 
     fn among(&self) -> Range<usize> {
         self.rows.clone()
@@ -113,7 +113,7 @@ impl RowPass<1, 2> for Rubbing<'_> {
     }
 
     #[inline(always)]
-    fn output(&self, _: usize, &[velocity, taken]: &[DVec3; 2]) -> Rub {
-        Rub { velocity, taken: taken.x }
+    fn output(&self, _: usize, &[velocity, taken]: &[DVec3; 2]) -> UnitFriction {
+        UnitFriction { velocity, taken: taken.x }
     }
 }

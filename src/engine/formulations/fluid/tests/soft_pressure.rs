@@ -53,14 +53,14 @@ fn the_virial_of_pressure_is_that_of_the_volume_of_any_body() {
         ("Three", SPACE, "Box(min: (-0.3, -0.3, -0.2), max: (0.3, 0.3, 0.2))"),
     ] {
         // On a cubic lattice sum V w x (x) x is 0.98 of the unit matrix.
-        let (axes, room) = if dimension == "Two" { (2, 0.02) } else { (3, 0.03) };
+        let (axes, tolerance) = if dimension == "Two" { (2, 0.02) } else { (3, 0.03) };
         for formulation in ["TotalLagrangian", "UpdatedLagrangian", "Eulerian"] {
             let mut sim = double(&immersed(dimension, domain, shape, formulation, "time: (end: 1.0)"));
             sim.start().expect("a start");
             let stress = virial(&sim) * 1e-3;
             for (k, axis) in DVec3::AXES.iter().enumerate().take(axes) {
                 let along = axis.dot(stress * *axis);
-                assert!((along + 1.0).abs() < room, "{shape}, {formulation}: {along} along axis {k}");
+                assert!((along + 1.0).abs() < tolerance, "{shape}, {formulation}: {along} along axis {k}");
             }
         }
     }

@@ -10,8 +10,8 @@ use crate::world::ReferencePosition;
 
 /// Largest distance of a particle from where the map puts it, over the spacing.
 const MARGIN: f64 = 1e-6;
-/// Least determinant of the moments of a body that fixes a map, over that of a body of equal width along all
-/// axes.
+/// Minimum determinant of the moments of a body that fixes a map, over that of a body of equal width along
+/// all axes.
 const FLAT: f64 = 1e-9;
 /// `X = home + map (x - now)`: from a place to where it is in the body as the scene has it.
 #[derive(Clone, Copy, Debug, PartialEq)]

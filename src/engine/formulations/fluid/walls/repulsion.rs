@@ -104,8 +104,8 @@ impl Repulsion {
         Ok(())
     }
 
-    /// Turns distances into forces, particle by particle, and leaves out those without.
-    fn settle(
+    /// Computes the forces from the distances, particle by particle, and removes zero forces.
+    fn compute_forces(
         &mut self,
         cloud: &FlowCloud,
         out: &mut Vec<Repelled>,
@@ -149,7 +149,7 @@ impl Run for Repulsion {
         repelled.reserve(cloud.fluid);
         repelled.extend(self.close.iter().map(|&i| Repelled { i: i as usize, ..none }));
         self.measure(&cloud, &mut repelled, step)?;
-        self.settle(&cloud, &mut repelled, step)?;
+        self.compute_forces(&cloud, &mut repelled, step)?;
         Repelled::share(&mut repelled);
         cloud.repelled = repelled;
         Ok(())

@@ -6,7 +6,7 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::wall_pressure::{FluidBeside, share_wetted};
-use crate::formulations::fluid::cloud::{FlowCloud, FluidState, LEAST_SHARE, take_until};
+use crate::formulations::fluid::cloud::{FlowCloud, FluidState, MIN_SHARE, take_until};
 use crate::formulations::fluid::lists::blocks::{BlockLists, Blocks, OfBlocks, OwnBlock, Packed, dot};
 use crate::formulations::fluid::lists::{NearRow, NearWriter};
 use crate::parallel::{
@@ -151,24 +151,24 @@ impl OwnFluid<'_> {
         let other = &self.packed[j];
         let pair = self.own.to(a, other, &self.unit);
         let distance = a.sqrt(dot(a, &pair.x, &pair.x));
-        let value = a.times(self.cloud.kernel.values(a, distance), a.same(other.volume));
+        let value = a.mul(self.cloud.kernel.values(a, distance), a.same(other.volume));
         // rho = rho_0 + p / c_0^2 to first order in the compression.
         let p = f64::from(other.pressure);
         let density = (state.density + p / (state.sound_speed * state.sound_speed)) as f32;
-        let weighed = a.times(value, a.same(density));
-        sums.total = a.plus(sums.total, value);
-        sums.pressure = a.times_add(value, a.same(other.pressure), sums.pressure);
+        let weighed = a.mul(value, a.same(density));
+        sums.total = a.add(sums.total, value);
+        sums.pressure = a.mul_add(value, a.same(other.pressure), sums.pressure);
         if let Some(load) = self.cloud.loads.get(j) {
             for axis in 0..A::AXES {
-                let along = a.times(pair.x[axis], a.same(-load[axis] as f32));
-                sums.pressure = a.times_add(weighed, along, sums.pressure);
+                let along = a.mul(pair.x[axis], a.same(-load[axis] as f32));
+                sums.pressure = a.mul_add(weighed, along, sums.pressure);
             }
         }
         for axis in 0..A::AXES {
-            sums.moment[axis] = a.times_add(weighed, pair.x[axis], sums.moment[axis]);
+            sums.moment[axis] = a.mul_add(weighed, pair.x[axis], sums.moment[axis]);
             if STICKS {
-                sums.offset[axis] = a.times_add(value, pair.x[axis], sums.offset[axis]);
-                sums.velocity[axis] = a.times_add(value, pair.v[axis], sums.velocity[axis]);
+                sums.offset[axis] = a.mul_add(value, pair.x[axis], sums.offset[axis]);
+                sums.velocity[axis] = a.mul_add(value, pair.v[axis], sums.velocity[axis]);
             }
         }
     }
@@ -187,7 +187,7 @@ impl BlockSums {
     #[inline(always)]
     fn mean(&self, lane: usize) -> FluidBeside {
         let total = f64::from(self.total.0[lane]);
-        if total <= LEAST_SHARE {
+        if total <= MIN_SHARE {
             return FluidBeside::default();
         }
         let vector = |[x, y, z]: &[Lanes8; 3]| {

@@ -17,7 +17,7 @@
 use std::ops::Range;
 
 use super::wall_pressure::share_wetted;
-use crate::formulations::fluid::cloud::{FlowCloud, LEAST_SHARE};
+use crate::formulations::fluid::cloud::{FlowCloud, MIN_SHARE};
 use crate::formulations::fluid::lanes::{Four, MASKS, OwnRecord, as_rows, dot, filled_up};
 use crate::parallel::{
     FourLanes, Lanes4, PlaneOrSpace, Split, for_each_block, for_each_own_block, run_hot_in, share_rows_of,
@@ -113,7 +113,7 @@ impl<const D: usize> FourBefore<D> {
             x[axis] = a.scale_add(back, four.v[axis], x[axis]);
         }
         let distance = a.sqrt(dot(a, &x, &x));
-        let volume = a.times(four.volume, MASKS[chunk.len()]);
+        let volume = a.mul(four.volume, MASKS[chunk.len()]);
         Self { four, x, distance, volume }
     }
 }
@@ -143,12 +143,12 @@ impl RatesBeside<'_> {
             for chunk in cloud.pairs.boundary.row(row).chunks(4) {
                 let FourBefore { four, x, distance, volume } =
                     FourBefore::gather::<A, P>(a, cloud, &own, chunk, back);
-                share = a.times_add(kernel.values(a, distance), volume, share);
-                let approach = a.times(dot(a, &four.v, &x), volume);
-                rate = a.times_add(kernel.weights(a, distance), approach, rate);
+                share = a.mul_add(kernel.values(a, distance), volume, share);
+                let approach = a.mul(dot(a, &four.v, &x), volume);
+                rate = a.mul_add(kernel.weights(a, distance), approach, rate);
             }
             let share = share.sum();
-            *out = if share > LEAST_SHARE { rate.sum() / share } else { 0.0 };
+            *out = if share > MIN_SHARE { rate.sum() / share } else { 0.0 };
         }
     }
 }
@@ -179,7 +179,7 @@ impl SpreadRates<'_> {
                 let FourBefore { distance, volume, .. } =
                     FourBefore::gather::<A, P>(a, cloud, &own, chunk, back);
                 let rates = Lanes4(filled_up(chunk).map(|j| rates[j as usize - cloud.fluid]));
-                sum = a.times_add(a.times(cloud.kernel.values(a, distance), volume), rates, sum);
+                sum = a.mul_add(a.mul(cloud.kernel.values(a, distance), volume), rates, sum);
             }
             *out = sum.sum();
         }

@@ -10,7 +10,7 @@ use std::ops::Range;
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
-use crate::formulations::fluid::cloud::{FlowCloud, FluidState, LEAST_SHARE, take_until};
+use crate::formulations::fluid::cloud::{FlowCloud, FluidState, MIN_SHARE, take_until};
 use crate::formulations::fluid::lanes::{
     FlowParticle, Four, FourPlaces, MASKS, OwnRecord, as_rows, dot, filled_up, sums,
 };
@@ -184,23 +184,23 @@ impl<const D: usize> SumsBeside<D> {
         let rows = filled_up(chunk);
         let four = Four::<D>::gather::<A, P>(a, &cloud.records, own, as_rows(rows), &cloud.periods);
         let distance = a.sqrt(dot(a, &four.x, &four.x));
-        let volume = a.times(four.volume, MASKS[chunk.len()]);
-        let value = a.times(cloud.kernel.values(a, distance), volume);
+        let volume = a.mul(four.volume, MASKS[chunk.len()]);
+        let value = a.mul(cloud.kernel.values(a, distance), volume);
         // rho = rho_0 + p / c_0^2 to first order in the compression.
         let per_pressure = 1.0 / (state.sound_speed * state.sound_speed);
         let density = a.scale_add(per_pressure, four.pressure, Lanes4::splat(state.density));
-        self.total = a.plus(self.total, value);
-        self.pressure = a.times_add(value, four.pressure, self.pressure);
-        let weighed = a.times(value, density);
+        self.total = a.add(self.total, value);
+        self.pressure = a.mul_add(value, four.pressure, self.pressure);
+        let weighed = a.mul(value, density);
         if !cloud.loads.is_empty() {
             let along = along_loads::<A, D>(a, cloud, rows, &four.x);
-            self.pressure = a.minus(self.pressure, a.times(weighed, along));
+            self.pressure = a.sub(self.pressure, a.mul(weighed, along));
         }
         for axis in 0..D {
-            self.moment[axis] = a.times_add(weighed, four.x[axis], self.moment[axis]);
+            self.moment[axis] = a.mul_add(weighed, four.x[axis], self.moment[axis]);
             if STICKS {
-                self.offset[axis] = a.times_add(value, four.x[axis], self.offset[axis]);
-                self.velocity[axis] = a.times_add(value, four.v[axis], self.velocity[axis]);
+                self.offset[axis] = a.mul_add(value, four.x[axis], self.offset[axis]);
+                self.velocity[axis] = a.mul_add(value, four.v[axis], self.velocity[axis]);
             }
         }
     }
@@ -209,7 +209,7 @@ impl<const D: usize> SumsBeside<D> {
     #[inline(always)]
     fn mean<A: FourLanes, const STICKS: bool>(&self, a: A, out: &mut FluidBeside) {
         let total = self.total.sum();
-        if total > LEAST_SHARE {
+        if total > MIN_SHARE {
             let mean = 1.0 / total;
             out.pressure = self.pressure.sum() * mean;
             out.moment = sums(a, &self.moment) * mean;
@@ -232,7 +232,7 @@ fn along_loads<A: FourLanes, const D: usize>(
     let loads = rows.map(|j| cloud.loads[j as usize]);
     let mut sum = Lanes4::ZERO;
     for axis in 0..D {
-        sum = a.times_add(Lanes4(loads.map(|load| load[axis])), x[axis], sum);
+        sum = a.mul_add(Lanes4(loads.map(|load| load[axis])), x[axis], sum);
     }
     sum
 }

@@ -12,7 +12,7 @@ use crate::formulations::fluid::cloud::{FlowCloud, FluidState, Group};
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::notation::quantity;
 use crate::parallel::{BlockSum, sum_over_blocks};
-use crate::schedule::{Step, warn_anew};
+use crate::schedule::{Step, replace_warning};
 
 /// Standard deviation of the compression that is worth a warning: pressures that differ by a thirtieth to a
 /// tenth of rho_0 c_0^2.
@@ -27,12 +27,12 @@ const USUAL: f64 = 0.003;
 /// Watches the compression of every body.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CompressionWatch {
-    bodies: Vec<Told>,
+    bodies: Vec<ReportedDeviation>,
 }
 
 /// Deviation reported for a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-struct Told {
+struct ReportedDeviation {
     /// Frames in sequence with a large deviation.
     frames: u32,
     /// The largest deviation reported to the user.
@@ -52,7 +52,7 @@ impl BlockSum for CompressionSums {
 impl CompressionWatch {
     /// Checks all fluids.
     pub fn look(&mut self, cloud: &FlowCloud, step: &mut Step<'_>) {
-        self.bodies.resize(cloud.groups.len(), Told::default());
+        self.bodies.resize(cloud.groups.len(), ReportedDeviation::default());
         for (group, told) in cloud.groups.iter().zip(&mut self.bodies) {
             let Some(state) = group.fluid() else { break };
             let deviation = deviation(&cloud.records[group.cloud.clone()], state.bulk_modulus());
@@ -62,7 +62,7 @@ impl CompressionWatch {
             }
             told.deviation = deviation;
             let (begin, text) = text(group, state, deviation, step);
-            warn_anew(step.warnings, &begin, text);
+            replace_warning(step.warnings, &begin, text);
         }
     }
 }

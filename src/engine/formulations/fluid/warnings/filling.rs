@@ -13,7 +13,7 @@ use crate::correction::{add_moment, moment_of};
 use crate::formulations::fluid::cloud::{FlowCloud, NearPairs, RowPass, RowSums, smallest_eigenvalue};
 use crate::notation::quantity;
 use crate::parallel::{Arithmetic, Vector, sum_over_blocks};
-use crate::schedule::{Step, warn_anew};
+use crate::schedule::{Step, replace_warning};
 
 /// Smallest eigenvalue of the moment matrix above which a particle is inside the fluid.
 const INSIDE: f64 = 0.75;
@@ -21,7 +21,7 @@ const INSIDE: f64 = 0.75;
 const SHARE: f64 = 0.1;
 /// Growth of the difference for which the warning is renewed.
 const GROWTH: f64 = 1.2;
-/// Least part of the particles of a body that has to be inside for a mean: a splash has gaps.
+/// Minimum part of the particles of a body that has to be inside for a mean: a splash has gaps.
 const PART: f64 = 0.25;
 
 /// Watches the filling of every body.
@@ -60,7 +60,7 @@ impl FillingWatch {
                     "the flow has collapsed: a larger `sound_speed`, `density_diffusion()` or a smaller step may help"
                 }
             );
-            warn_anew(step.warnings, &begin, text);
+            replace_warning(step.warnings, &begin, text);
         }
     }
 }

@@ -13,9 +13,9 @@ use crate::world::BodyId;
 const BESIDE: f64 = 1.5;
 /// Root mean square difference of the filling beside a boundary from that in the fluid that is worth a
 /// warning: a gap of a quarter of a spacing along a plane. Round bodies in square lattices have 0.03.
-const LARGEST_DEVIATION: f64 = 0.04;
-/// Least number of particles for a mean.
-const LEAST: usize = 8;
+const MAX_DEVIATION: f64 = 0.04;
+/// Minimum number of particles for a mean.
+const MIN_COUNT: usize = 8;
 /// Distances of particles that face a boundary across a gap from the nearest one of it, over the mean of both
 /// spacings: half a spacing to two of empty space. Particles farther away are meant to fall.
 const ACROSS: std::ops::Range<f64> = 1.5..3.0;
@@ -33,7 +33,7 @@ pub fn look(cloud: &FlowCloud, scratch: &mut Vec<Option<f64>>, step: &mut Step<'
         let rows = || fluid.cloud.clone().zip(&*scratch).filter_map(|(i, filling)| Some((i, (*filling)?)));
         let is_bounded = |i: usize| cloud.near_row(i).last().is_some_and(|&j| j as usize >= cloud.fluid);
         let inside: Vec<f64> = rows().filter(|(i, _)| !is_bounded(*i)).map(|(_, filling)| filling).collect();
-        let even = if inside.len() < LEAST { 1.0 } else { mean(inside.iter().copied()) };
+        let even = if inside.len() < MIN_COUNT { 1.0 } else { mean(inside.iter().copied()) };
         let mut last = None;
         for boundary in cloud.groups.iter().filter(|group| group.fluid().is_none()) {
             // A thin body is there twice.
@@ -44,7 +44,7 @@ pub fn look(cloud: &FlowCloud, scratch: &mut Vec<Option<f64>>, step: &mut Step<'
             let facing: Vec<f64> =
                 fluid.cloud.clone().filter_map(|i| distance_across(cloud, i, boundary.body)).collect();
             let across = || facing.iter().filter(|distance| ACROSS.contains(distance));
-            if across().count() >= LEAST && across().count() as f64 > PART * facing.len() as f64 {
+            if across().count() >= MIN_COUNT && across().count() as f64 > PART * facing.len() as f64 {
                 let gap = mean(across().copied()) - 1.0;
                 let text = text_of_gap(names(), across().count(), gap);
                 step.warnings.push(text);
@@ -66,7 +66,7 @@ pub fn look(cloud: &FlowCloud, scratch: &mut Vec<Option<f64>>, step: &mut Step<'
             let beside: Vec<f64> =
                 rows().filter(|(i, _)| is_beside(*i)).map(|(_, filling)| filling / even).collect();
             let deviation = mean(beside.iter().map(|filling| (filling - 1.0).powi(2))).sqrt();
-            if beside.len() >= LEAST && deviation > LARGEST_DEVIATION {
+            if beside.len() >= MIN_COUNT && deviation > MAX_DEVIATION {
                 let text = text(names(), mean(beside.iter().copied()), deviation);
                 step.warnings.push(text);
             }

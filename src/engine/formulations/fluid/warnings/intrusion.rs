@@ -26,7 +26,7 @@ const NEAREST: f64 = 0.9;
 pub struct Intrusion {
     bodies: Vec<IntrudedShape>,
     /// Depth at which a particle is inside, m.
-    least: f64,
+    min_depth: f64,
     /// Pairs of a fluid and a body, by number, that the user has been warned of, with the most particles at
     /// once.
     pub told: Vec<(usize, usize, u32)>,
@@ -58,7 +58,7 @@ impl Intrusion {
             Some(IntrudedShape { id: body.id, region, spacing: body.spacing, is_worn: false })
         };
         let bodies = sim.bodies().iter().filter_map(body).collect();
-        Self { bodies, least: DEPTH * spacing, told: Vec::new() }
+        Self { bodies, min_depth: DEPTH * spacing, told: Vec::new() }
     }
 
     /// Checks all particles, and warns of new ones.
@@ -71,7 +71,7 @@ impl Intrusion {
                 body.is_worn |=
                     cloud.records[other.cloud.clone()].iter().any(|record| record.volume() <= 0.0);
                 let body = &*body;
-                if let Some(deepest) = deepest(cloud, [fluid, other], body, reference, self.least) {
+                if let Some(deepest) = deepest(cloud, [fluid, other], body, reference, self.min_depth) {
                     self.warn([fluid, other], &deepest, cloud, step)?;
                 }
             }
@@ -133,7 +133,7 @@ fn deepest(
     [fluid, other]: [&Group; 2],
     body: &IntrudedShape,
     reference: &[ReferencePosition],
-    least: f64,
+    min_depth: f64,
 ) -> Option<Deepest> {
     let beside = BoundingBody { cloud, group: other, spacing: body.spacing, reference };
     let mut found: Option<Deepest> = None;
@@ -146,7 +146,7 @@ fn deepest(
             continue;
         }
         let depth = -body.region.distance(place);
-        if depth < least {
+        if depth < min_depth {
             continue;
         }
         let count = found.as_ref().map_or(0, |found| found.count) + 1;

@@ -13,7 +13,7 @@ use crate::world::Mobility;
 /// Distance of two particles that touch, over the mean of their spacings.
 const TOUCH: f64 = 1.25;
 /// Width of a dry part in contact, over the spacing of the fluid, from which on a body is reported.
-const LEAST: f64 = 3.0;
+const MIN_WIDTH: f64 = 3.0;
 
 /// Warns, once, of the first body that lies on something and is wet elsewhere; `spacing` is that of the
 /// fluid, m.
@@ -54,7 +54,7 @@ pub fn look(
             message: error.to_string(),
         })?;
         let Some(&first) =
-            touching.first().filter(|_| touching.len() as f64 >= (LEAST * spacing / own).powi(across))
+            touching.first().filter(|_| touching.len() as f64 >= (MIN_WIDTH * spacing / own).powi(across))
         else {
             continue;
         };

@@ -12,8 +12,8 @@ use crate::world::{Column, MissingColumn, Position, World};
 
 /// Steps along the line in a support radius.
 const STEPS: f64 = 12.0;
-/// Least part of a place that fluids fill where it is wet: inside walls none is.
-const LEAST: f64 = 0.1;
+/// Minimum part of a place that fluids fill where it is wet: inside walls none is.
+const MIN_FILLING: f64 = 0.1;
 
 /// A line up from a point.
 pub struct LevelGauge {
@@ -91,7 +91,7 @@ fn excess(cloud: &FlowCloud, near: &[NearLine], height: f64) -> f64 {
         let share = other.volume * cloud.kernel.value(distance);
         *(if other.fluid { &mut fluid } else { &mut wall }) += share;
     }
-    (fluid - 0.5 * (1.0 - wall)).min(fluid - LEAST)
+    (fluid - 0.5 * (1.0 - wall)).min(fluid - MIN_FILLING)
 }
 
 /// Part of an interval in which a linear function of these values at its ends is above zero.

@@ -16,8 +16,8 @@ use crate::world::{Column, MissingColumn, Position, World};
 
 /// Part of the place in front of a point that a fluid without gaps fills at least.
 const FILLED: f64 = 0.8;
-/// Least part of the place in front of a point for which there is a pressure.
-const LEAST: f64 = 1e-6;
+/// Minimum part of the place in front of a point for which there is a pressure.
+const MIN_FILLING: f64 = 1e-6;
 
 /// A face in a wall.
 pub struct SensorGauge {
@@ -87,7 +87,7 @@ impl SensorGauge {
             }
         }
         let place = total.max(FILLED * left);
-        let pressure = if place > LEAST { sum / place } else { 0.0 };
+        let pressure = if place > MIN_FILLING { sum / place } else { 0.0 };
         // What the wall around the point does: without suction its pressure is not below zero.
         let suction = nearest_surface(cloud, walls, point).is_none_or(|surface| surface.suction);
         if suction { pressure } else { pressure.max(0.0) }

@@ -133,7 +133,7 @@ impl BlockLists {
         let is_own = |block| others.is_own(blocks + block);
         of_boundaries.join(of_others, is_own, boundary, particles, joined);
         pack_places(places, &positions[..particles as usize], units);
-        fluid.make_room(&[candidates]);
+        fluid.allocate(&[candidates]);
         if sides.is_some() {
             fluid.keep_lanes();
             write_seen(seen_walls, of_fluids, of_blocks, walls);
@@ -144,10 +144,10 @@ impl BlockLists {
         counts.resize(blocks, [0; EIGHT]);
         let rows = (&mut counts[..], fluid.writer());
         for_each_block(rows, &mut Vec::new(), &|first, (counts, near): (&mut [_], NearWriter<'_>)| {
-            let sift = Sift { table, candidates, places, sides, unit, limit, first, counts, near };
+            let sift = NeighborFilter { table, candidates, places, sides, unit, limit, first, counts, near };
             match sides {
-                Some(_) => run_blocks_on(plane, Sifted::<true>(sift)),
-                None => run_blocks_on(plane, Sifted::<false>(sift)),
+                Some(_) => run_blocks_on(plane, FilterLoop::<true>(sift)),
+                None => run_blocks_on(plane, FilterLoop::<false>(sift)),
             }
         });
         Ok(())
@@ -155,13 +155,13 @@ impl BlockLists {
 }
 
 /// The bits of those particles of a block, among the ones whose bits are set, that see a fluid particle.
-fn who_sees(sides: &Sides<'_>, walls: &NeighborList, rows: &Rows, j: u32, near: usize) -> usize {
+fn visible_to(sides: &Sides<'_>, walls: &NeighborList, rows: &Rows, j: u32, near: usize) -> usize {
     let sees = |lane: &usize| near >> lane & 1 == 1 && sides.sees(rows[*lane] as usize, j as usize, walls);
     (0..EIGHT).filter(sees).fold(0, |bits, lane| bits | 1 << lane)
 }
 
 /// Takes out of the candidates those that are near.
-struct Sift<'a> {
+struct NeighborFilter<'a> {
     table: &'a BlockTable,
     candidates: &'a NeighborList,
     places: &'a [Packed],
@@ -174,14 +174,15 @@ struct Sift<'a> {
 }
 
 /// `HIDDEN`: where some particles do not see all near ones.
-struct Sifted<'a, const HIDDEN: bool>(Sift<'a>);
+struct FilterLoop<'a, const HIDDEN: bool>(NeighborFilter<'a>);
 
-impl<const HIDDEN: bool> BlockLoop for Sifted<'_, HIDDEN> {
+impl<const HIDDEN: bool> BlockLoop for FilterLoop<'_, HIDDEN> {
     type Output = ();
 
     #[inline(always)]
     fn run<A: EightLanes>(self, a: A) {
-        let Sift { table, candidates, places, sides, unit, limit, first, counts, mut near } = self.0;
+        let NeighborFilter { table, candidates, places, sides, unit, limit, first, counts, mut near } =
+            self.0;
         let unit = [a.splat(unit[0]), a.splat(unit[1]), a.splat(unit[2])];
         let limit = a.splat(limit);
         for (k, counts) in counts.iter_mut().enumerate() {
@@ -194,11 +195,11 @@ impl<const HIDDEN: bool> BlockLoop for Sifted<'_, HIDDEN> {
                 let square = dot(a, &x, &x);
                 let bits = a.below(square, limit);
                 let bits = match sides {
-                    Some((sides, walls)) if HIDDEN => who_sees(sides, walls, rows, j, bits),
+                    Some((sides, walls)) if HIDDEN => visible_to(sides, walls, rows, j, bits),
                     _ => bits,
                 };
                 row.push_if::<HIDDEN>(j, bits);
-                count = a.plus(count, a.where_below(square, limit, a.same(1.0)));
+                count = a.add(count, a.where_below(square, limit, a.same(1.0)));
             }
             row.close();
             for lane in 0..EIGHT {

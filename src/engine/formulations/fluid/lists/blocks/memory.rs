@@ -22,22 +22,22 @@ impl Blocks {
         Self { lists: BlockLists::new(units), units, packed: Vec::new(), near: NearRows::default(), hides }
     }
 
-    /// Makes room for the neighbours within the support: of the blocks, and, if they are wanted, of the
+    /// Allocates memory for the neighbours within the support: of the blocks, and, if they are wanted, of the
     /// particles.
-    pub fn make_room(&mut self, of_particles: &mut NearRows) {
+    pub fn allocate(&mut self, of_particles: &mut NearRows) {
         let BlockLists { table, fluid, walls, boundary, counts, .. } = &self.lists;
         let most = |block: usize| match block.checked_sub(walls.rows()) {
             Some(block) => boundary.row(block).len(),
             None => fluid.row(block).len() + walls.row(block).len(),
         };
-        self.near.make_room_for(table.rows.len(), most);
+        self.near.allocate_rows(table.rows.len(), most);
         if self.hides {
             self.near.keep_lanes();
             let most = |i: usize| {
                 let (block, lane) = table.place(i);
                 counts[block][lane] as usize + walls.row(block).len()
             };
-            of_particles.make_room_for(table.particles(), most);
+            of_particles.allocate_rows(table.particles(), most);
         }
     }
 

@@ -139,8 +139,8 @@ impl OwnBlock {
     pub fn to<A: EightLanes>(&self, a: A, other: &Packed, unit: &[Lanes8; 3]) -> Other {
         let (mut x, mut v) = ([Lanes8::ZERO; 3], [Lanes8::ZERO; 3]);
         for axis in 0..A::AXES {
-            x[axis] = a.times(a.apart(other.place[axis], self.place[axis]), unit[axis]);
-            v[axis] = a.minus(a.same(other.velocity[axis]), self.velocity[axis]);
+            x[axis] = a.mul(a.apart(other.place[axis], self.place[axis]), unit[axis]);
+            v[axis] = a.sub(a.same(other.velocity[axis]), self.velocity[axis]);
         }
         Other { x, v }
     }
@@ -149,8 +149,8 @@ impl OwnBlock {
 /// Scalar products of the vectors of all lanes.
 #[inline(always)]
 pub fn dot<A: EightLanes>(a: A, u: &[Lanes8; 3], v: &[Lanes8; 3]) -> Lanes8 {
-    let plane = a.times_add(u[1], v[1], a.times(u[0], v[0]));
-    if A::AXES == 3 { a.times_add(u[2], v[2], plane) } else { plane }
+    let plane = a.mul_add(u[1], v[1], a.mul(u[0], v[0]));
+    if A::AXES == 3 { a.mul_add(u[2], v[2], plane) } else { plane }
 }
 
 #[cfg(test)]

@@ -5,8 +5,8 @@ use crate::notation::number;
 use crate::plugin::{SetupError, SimBuilder};
 use crate::scene::{Precision, Problem};
 
-/// Least and largest spacing of blocks, m: weights of pairs in three dimensions go with its fifth power, and
-/// single precision ends at 1e38.
+/// Minimum and maximum spacing of blocks, m: weights of pairs in three dimensions go with its fifth power,
+/// and single precision ends at 1e38.
 const SPACINGS: [f64; 2] = [1e-6, 1e6];
 
 /// The blocks of a flow of that spacing, m, if it has some. `thin` says that the flow does not see across

@@ -26,9 +26,9 @@ impl FlowCloud {
             lists,
             unit: units.length.to_array(),
             back: -0.5 * dt,
-            reach: self.reach * self.reach,
+            range: self.repulsion_range * self.repulsion_range,
             limit: self.kernel.support * self.kernel.support,
-            least: self.kernel.least_square(),
+            least: self.kernel.min_square(),
             scale: self.kernel.weight_scale(),
             plane: self.plane,
         };
@@ -73,9 +73,9 @@ struct Compress<'a> {
     unit: [f64; 3],
     /// Time from the end of the step to its middle, s.
     back: f64,
-    /// Squares of the reach of boundaries, of the support radius, and of the distance of particles in one
+    /// Squares of the range of repulsion, of the support radius, and of the distance of particles in one
     /// place, m2.
-    reach: f64,
+    range: f64,
     limit: f64,
     least: f64,
     /// Weight at r = 0.
@@ -130,7 +130,7 @@ impl<K: PairShape, const HIDDEN: bool> BlockLoop for CompressionBlocks<'_, K, HI
     #[inline(always)]
     fn run<A: EightLanes>(self, a: A) {
         let Self { pass, kernel, first, rows: (rates, is_close, near) } = self;
-        let Compress { packed, lists, unit, back, reach, limit, least: smallest, scale, .. } = pass;
+        let Compress { packed, lists, unit, back, range, limit, least: smallest, scale, .. } = pass;
         let mut writer = near.blocks;
         let unit = [a.splat(unit[0]), a.splat(unit[1]), a.splat(unit[2])];
         let (back, limit, smallest) = (a.splat(back), a.splat(limit), a.splat(smallest));
@@ -147,18 +147,18 @@ impl<K: PairShape, const HIDDEN: bool> BlockLoop for CompressionBlocks<'_, K, HI
                     sums.add::<A, HIDDEN>(a, j, seen, &mut near);
                 }
                 for (&j, &seen) in walls.iter().zip(seen_walls) {
-                    least = a.smaller(sums.add::<A, HIDDEN>(a, j, seen, &mut near), least);
+                    least = a.min(sums.add::<A, HIDDEN>(a, j, seen, &mut near), least);
                 }
             } else {
                 for &j in fluid {
                     sums.add::<A, HIDDEN>(a, j, ALL, &mut near);
                 }
                 for &j in walls {
-                    least = a.smaller(sums.add::<A, HIDDEN>(a, j, ALL, &mut near), least);
+                    least = a.min(sums.add::<A, HIDDEN>(a, j, ALL, &mut near), least);
                 }
             }
             near.close();
-            let close = a.below(least, a.splat(reach));
+            let close = a.below(least, a.splat(range));
             for lane in 0..EIGHT {
                 let row = rows[lane] as usize - first;
                 rates[row] = scale * f64::from(sums.sum.0[lane]);
@@ -196,15 +196,15 @@ impl<K: PairShape> RateSums<'_, K> {
         near.push_if::<HIDDEN>(j, a.below(square, self.limit) & usize::from(seen));
         let mut x = pair.x;
         for axis in 0..A::AXES {
-            x[axis] = a.times_add(pair.v[axis], self.back, x[axis]);
+            x[axis] = a.mul_add(pair.v[axis], self.back, x[axis]);
         }
-        let distance = a.sqrt(a.larger(dot(a, &x, &x), self.smallest));
+        let distance = a.sqrt(a.max(dot(a, &x, &x), self.smallest));
         let mut volume = a.same(other.volume);
         if HIDDEN {
-            volume = a.times(volume, SEEN[usize::from(seen)]);
+            volume = a.mul(volume, SEEN[usize::from(seen)]);
         }
-        let approach = a.times(dot(a, &pair.v, &x), volume);
-        self.sum = a.times_add(self.kernel.shape(a, distance), approach, self.sum);
+        let approach = a.mul(dot(a, &pair.v, &x), volume);
+        self.sum = a.mul_add(self.kernel.shape(a, distance), approach, self.sum);
         square
     }
 }

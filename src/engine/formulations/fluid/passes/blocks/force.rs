@@ -5,7 +5,7 @@ use std::cell::RefCell;
 
 use super::super::pair_force::ForceRows;
 use super::super::pair_sums::Between;
-use super::land::{Landing, land};
+use super::land::{BlockOutput, land};
 use super::pairs::{BlockForces, Chunk, PairsOfBlock};
 use crate::formulations::fluid::cloud::{FlowCloud, Group, take_until};
 use crate::formulations::fluid::lanes::{KernelLoop, PairShape};
@@ -141,7 +141,7 @@ impl<K: PairShape> BlockLoop for ForceBlocks<'_, K> {
                 for chunk in row.chunks(CHUNK) {
                     let of_chunk = take_bits(&mut seen, chunk.len());
                     let chunk = Chunk { row: chunk, seen: of_chunk, between };
-                    let kept = terms.map(|_| pairs.room(chunk.row.len()));
+                    let kept = terms.map(|_| pairs.slots(chunk.row.len()));
                     of_block.add(a, chunk, kept, &mut sums);
                     if let Some(terms) = terms {
                         if terms.reads.kernel {
@@ -152,7 +152,12 @@ impl<K: PairShape> BlockLoop for ForceBlocks<'_, K> {
                 }
             }
             let of_terms = &of_terms[..count];
-            land(&sums, of_terms, Landing { particles, first, plane: cloud.plane, adds: *adds }, &mut rows);
+            land(
+                &sums,
+                of_terms,
+                BlockOutput { particles, first, plane: cloud.plane, adds: *adds },
+                &mut rows,
+            );
             if count > 0 {
                 fastest.add_block(of_terms);
             }

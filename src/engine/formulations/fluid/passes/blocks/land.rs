@@ -11,7 +11,7 @@ use crate::parallel::{EIGHT, Lanes8};
 use crate::world::Force;
 
 /// Where the sums of a block go.
-pub struct Landing<'a> {
+pub struct BlockOutput<'a> {
     pub particles: &'a Rows,
     /// The first of the rows.
     pub first: usize,
@@ -23,8 +23,8 @@ pub struct Landing<'a> {
 
 /// Writes the forces on the particles of a block, [`PARTS`](crate::formulations::fluid::cloud::PARTS) parts
 /// of each, and the results of the terms.
-pub fn land(sums: &BlockForces, of_terms: &[TermSums], landing: Landing<'_>, rows: &mut ForceRows<'_>) {
-    let Landing { particles, first, plane, adds } = landing;
+pub fn land(sums: &BlockForces, of_terms: &[TermSums], landing: BlockOutput<'_>, rows: &mut ForceRows<'_>) {
+    let BlockOutput { particles, first, plane, adds } = landing;
     let ForceRows { written, parts } = rows;
     for lane in 0..EIGHT {
         // Lanes without a particle repeat the last one.

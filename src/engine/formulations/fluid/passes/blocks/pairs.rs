@@ -56,7 +56,7 @@ pub struct Chunk<'c> {
 }
 
 /// A neighbour of the particles of a block with which they have friction.
-struct RubbingPair<'x> {
+struct FrictionPair<'x> {
     /// Its row in the cloud.
     row: u32,
     /// Share of the spin of the particle in that of the pair; the rest is that of the neighbour.
@@ -100,7 +100,7 @@ impl<'a, K: PairShape> PairsOfBlock<'a, K> {
         self.cloud.viscosities.friction(self.viscosity)
     }
 
-    /// Adds some neighbours to the forces, and puts the geometry of the pairs into `kept`, if there is room
+    /// Adds some neighbours to the forces, and puts the geometry of the pairs into `kept`, if there are slots
     /// to keep it.
     #[inline(always)]
     pub fn add<A: EightLanes>(
@@ -135,19 +135,19 @@ impl<'a, K: PairShape> PairsOfBlock<'a, K> {
     ) {
         let Self { packed, unit, own, cloud: FlowCloud { kernel, .. }, .. } = self;
         let (scale, limit) = (a.splat(kernel.weight_scale()), a.splat(kernel.support * kernel.support));
-        let least = a.splat(kernel.least_square());
+        let least = a.splat(kernel.min_square());
         let share = between.shares()[0];
         let BlockForces { mut pressure, mut viscous, mut wall } = *sums;
         for n in 0..row.len() {
             let other = &packed[row[n] as usize];
             let Other { x, v } = own.to(a, other, unit);
             let square = dot(a, &x, &x);
-            let distance = a.sqrt(a.larger(square, least));
-            let mut weight = a.times(self.kernel.shape(a, distance), scale);
+            let distance = a.sqrt(a.max(square, least));
+            let mut weight = a.mul(self.kernel.shape(a, distance), scale);
             let mut volume = a.same(other.volume);
             if let Some(seen) = seen {
                 let seen = SEEN[usize::from(seen[n])];
-                (weight, volume) = (a.times(weight, seen), a.times(volume, seen));
+                (weight, volume) = (a.mul(weight, seen), a.mul(volume, seen));
             }
             if let Some(kept) = &mut kept {
                 // Neither what is beyond the support nor the particle itself.
@@ -159,21 +159,21 @@ impl<'a, K: PairShape> PairsOfBlock<'a, K> {
                     (kept.x[axis], kept.v[axis]) = (x[axis], v[axis]);
                 }
             }
-            let weight = a.times(weight, a.times(own.volume, a.same(other.volume)));
+            let weight = a.mul(weight, a.mul(own.volume, a.same(other.volume)));
             if BETWEEN == FLUIDS {
-                let push = a.times(weight, a.plus(own.pressure, a.same(other.pressure)));
+                let push = a.mul(weight, a.add(own.pressure, a.same(other.pressure)));
                 for axis in 0..A::AXES {
-                    pressure[axis] = a.times_add(push, x[axis], pressure[axis]);
+                    pressure[axis] = a.mul_add(push, x[axis], pressure[axis]);
                 }
             } else {
-                let (of_i, of_j) = (a.times(weight, own.pressure), a.times(weight, a.same(other.pressure)));
+                let (of_i, of_j) = (a.mul(weight, own.pressure), a.mul(weight, a.same(other.pressure)));
                 let (of_fluid, of_wall) = if BETWEEN == AND_BOUNDARY { (of_i, of_j) } else { (of_j, of_i) };
                 for axis in 0..A::AXES {
-                    pressure[axis] = a.times_add(of_fluid, x[axis], pressure[axis]);
-                    wall[axis] = a.times_add(of_wall, x[axis], wall[axis]);
+                    pressure[axis] = a.mul_add(of_fluid, x[axis], pressure[axis]);
+                    wall[axis] = a.mul_add(of_wall, x[axis], wall[axis]);
                 }
             }
-            let rubbing = RubbingPair { row: row[n], share, x: &x, v: &v, weight };
+            let rubbing = FrictionPair { row: row[n], share, x: &x, v: &v, weight };
             self.rub::<A, FRICTION>(a, rubbing, &mut viscous);
         }
         *sums = BlockForces { pressure, viscous, wall };
@@ -189,11 +189,16 @@ impl<'a, K: PairShape> PairsOfBlock<'a, K> {
 
     /// Adds the friction with a neighbour: `mu w (v_ij - omega_ij x x_ij)`.
     #[inline(always)]
-    fn rub<A: EightLanes, const FRICTION: u8>(&self, a: A, pair: RubbingPair<'_>, viscous: &mut [Lanes8; 3]) {
+    fn rub<A: EightLanes, const FRICTION: u8>(
+        &self,
+        a: A,
+        pair: FrictionPair<'_>,
+        viscous: &mut [Lanes8; 3],
+    ) {
         if FRICTION == NONE {
             return;
         }
-        let RubbingPair { row, share, x, v, weight } = pair;
+        let FrictionPair { row, share, x, v, weight } = pair;
         let friction = a.scale(self.viscosity, weight);
         let mut relative = *v;
         if FRICTION == WITH_SPIN {
@@ -206,16 +211,16 @@ impl<'a, K: PairShape> PairsOfBlock<'a, K> {
             if A::AXES == 3 {
                 for axis in 0..3 {
                     let (n, o) = ((axis + 1) % 3, (axis + 2) % 3);
-                    let turning = a.minus(a.times(omega[n], x[o]), a.times(omega[o], x[n]));
-                    relative[axis] = a.minus(v[axis], turning);
+                    let turning = a.sub(a.mul(omega[n], x[o]), a.mul(omega[o], x[n]));
+                    relative[axis] = a.sub(v[axis], turning);
                 }
             } else {
-                relative[0] = a.times_add(omega[2], x[1], v[0]);
-                relative[1] = a.minus(v[1], a.times(omega[2], x[0]));
+                relative[0] = a.mul_add(omega[2], x[1], v[0]);
+                relative[1] = a.sub(v[1], a.mul(omega[2], x[0]));
             }
         }
         for axis in 0..A::AXES {
-            viscous[axis] = a.times_add(friction, relative[axis], viscous[axis]);
+            viscous[axis] = a.mul_add(friction, relative[axis], viscous[axis]);
         }
     }
 }

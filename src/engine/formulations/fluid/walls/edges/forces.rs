@@ -101,7 +101,7 @@ impl FlowCloud {
 
     /// Adds what faces at edges take over to the forces on the particles of a group, and to the part of them
     /// that is due to boundaries.
-    pub(in crate::formulations::fluid) fn lean_on_edges(
+    pub(in crate::formulations::fluid) fn add_edge_forces(
         &self,
         group: &Group,
         total: &mut [Force],

@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::{DMat3, DVec3};
 
 use super::fronts::WallShapes;
-use crate::formulations::fluid::cloud::{EdgeParticle, FlowCloud, Group, LEAST_SHARE, part};
+use crate::formulations::fluid::cloud::{EdgeParticle, FlowCloud, Group, MIN_SHARE, part};
 use crate::linalg::dyad;
 use crate::plugin::SimBuilder;
 use crate::schedule::{Run, Step, StepError};
@@ -67,8 +67,14 @@ impl EdgeMotion {
         self.touched.sort_unstable();
     }
 
-    /// Turns the sums into the motion of the particles; `half` is half of the step, s.
-    fn settle(&mut self, cloud: &FlowCloud, walls: &Range<usize>, half: f64, out: &mut Vec<EdgeParticle>) {
+    /// Computes the motion of the particles from the sums; `half` is half of the step, s.
+    fn solve_motion(
+        &mut self,
+        cloud: &FlowCloud,
+        walls: &Range<usize>,
+        half: f64,
+        out: &mut Vec<EdgeParticle>,
+    ) {
         out.clear();
         for &row in &self.touched {
             let FaceSums { moments, motion, others, behind } =
@@ -82,7 +88,7 @@ impl EdgeMotion {
             let v = cloud.records[row].velocity();
             let excess = inverse * (motion + own * v) - behind * v;
             let [share, rate] = cloud.sums_beside(row, half, |part| part.dot(excess));
-            let rate = if share > LEAST_SHARE { -rate / share } else { 0.0 };
+            let rate = if share > MIN_SHARE { -rate / share } else { 0.0 };
             out.push(EdgeParticle { row, behind, inverse, own, excess, rate, force: [DVec3::ZERO; 2] });
         }
     }
@@ -96,7 +102,7 @@ impl Run for EdgeMotion {
         self.shapes.find(&cloud, step, &mut edges.fronts)?;
         cloud.edges.fronts = std::mem::take(&mut edges.fronts);
         self.add_faces(&cloud, &walls);
-        self.settle(&cloud, &walls, half, &mut edges.particles);
+        self.solve_motion(&cloud, &walls, half, &mut edges.particles);
         let mut rates = std::mem::take(&mut cloud.compression);
         for edge in &edges.particles {
             cloud.for_each_beside(edge.row, half, |j, _, force| rates[j] -= force.dot(edge.excess));

@@ -17,7 +17,7 @@ pub(super) struct FacesBefore {
 }
 
 impl FacesBefore {
-    /// Makes room for that many fluid particles.
+    /// Allocates memory for that many fluid particles.
     pub fn reserve(&mut self, fluid: usize) {
         self.numbers.resize(fluid, NONE);
         self.rows.reserve(fluid);

@@ -47,7 +47,7 @@ impl WallEnds {
         })
     }
 
-    /// The rows at edges, which are found once; and room for all particles.
+    /// The rows at edges, which are found once; and memory for all particles.
     fn find_edges(&mut self, cloud: &FlowCloud, step: &Step<'_>) -> Result<(), StepError> {
         if self.edges.is_some() {
             return Ok(());

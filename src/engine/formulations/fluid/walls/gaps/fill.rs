@@ -15,21 +15,21 @@ use super::moments::Surrounding;
 use crate::formulations::fluid::cloud::FlowCloud;
 
 /// Share of the fluid below which a particle sees none.
-const LEAST_SHARE: f64 = 1e-10;
+const MIN_SHARE: f64 = 1e-10;
 /// Closed share below which a dry gap is at its end.
 const OPEN: f64 = 0.5;
 
 /// The fluid at a particle: pressure, Pa, and its gradient at rest, Pa/m; its density, kg/m3, and the way to
 /// where it is, m.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct RestOfGap {
+pub struct GapRemainder {
     pub pressure: f64,
     pub slope: DVec3,
     density: f64,
     way: f64,
 }
 
-impl RestOfGap {
+impl GapRemainder {
     /// The pressure at that offset, m, Pa.
     fn at(&self, x: DVec3) -> f64 {
         self.pressure + self.slope.dot(x)
@@ -50,7 +50,7 @@ impl RestOfGap {
         let pressure = cloud.records[row as usize].pressure();
         let of_mean =
             || Self { pressure, slope: slope / total, density: mass / total, way: place.length() / total };
-        (total > LEAST_SHARE).then(of_mean)
+        (total > MIN_SHARE).then(of_mean)
     }
 }
 
@@ -63,7 +63,7 @@ pub struct Gap {
     /// Share of the empty space around it that is a gap.
     pub closed: f64,
     /// The fluid there; none before it is known.
-    pub fluid: Option<RestOfGap>,
+    pub fluid: Option<GapRemainder>,
     /// Fall of its pressure because the gap opens, Pa.
     pub fall: f64,
 }
@@ -78,22 +78,22 @@ pub struct BoundaryMotion<'a> {
 
 impl Gap {
     /// The fluid there with the pressure that is left, and nothing where it is not known.
-    pub fn filled(&self) -> Option<RestOfGap> {
-        let left = |fluid: RestOfGap| (fluid.pressure - self.fall).max(0.0);
-        self.fluid.map(|fluid| RestOfGap { pressure: left(fluid), ..fluid })
+    pub fn filled(&self) -> Option<GapRemainder> {
+        let left = |fluid: GapRemainder| (fluid.pressure - self.fall).max(0.0);
+        self.fluid.map(|fluid| GapRemainder { pressure: left(fluid), ..fluid })
     }
 
     /// Bernoulli: what flows into a gap as wide as the spacing that opens comes along the way from where the
     /// fluid is, the faster the longer that is.
     fn open(&mut self, cloud: &FlowCloud, motion: &BoundaryMotion<'_>) {
         let velocity = |row: usize| motion.velocities[row - cloud.fluid];
-        let Some(RestOfGap { density, way, .. }) = self.fluid else { return };
+        let Some(GapRemainder { density, way, .. }) = self.fluid else { return };
         let (mut total, mut mean) = (0.0, DVec3::ZERO);
         for pair in cloud.across_gap(self.particle) {
             total += pair.value;
             mean += pair.value * velocity(pair.row);
         }
-        if total > LEAST_SHARE {
+        if total > MIN_SHARE {
             let apart = mean / total - velocity(self.particle[0] as usize);
             let inflow = apart.dot(self.around.toward()).max(0.0) * way / motion.spacing;
             self.fall = 0.5 * density * inflow * inflow;
@@ -106,7 +106,7 @@ impl Gap {
 pub struct Fill {
     /// Number of every boundary particle among those beside gaps.
     numbers: Vec<u32>,
-    found: Vec<(usize, RestOfGap)>,
+    found: Vec<(usize, GapRemainder)>,
     /// Sums of weights and of pressures with them at particles on the other side of gaps.
     beyond: Vec<[f64; 2]>,
 }
@@ -119,7 +119,7 @@ impl Fill {
         for (k, gap) in (0..).zip(gaps.iter_mut()) {
             self.numbers[gap.particle[0] as usize - cloud.fluid] = k;
             if gap.fluid.is_none() && gap.closed < OPEN {
-                gap.fluid = Some(RestOfGap::default());
+                gap.fluid = Some(GapRemainder::default());
             }
         }
         let mut found = std::mem::take(&mut self.found);
@@ -138,9 +138,9 @@ impl Fill {
     }
 
     /// The fluid at particle `k` by those near it.
-    fn continued(&self, cloud: &FlowCloud, gaps: &[Gap], k: usize) -> Option<RestOfGap> {
+    fn continued(&self, cloud: &FlowCloud, gaps: &[Gap], k: usize) -> Option<GapRemainder> {
         let [row, list] = gaps[k].particle;
-        let (mut total, mut sum) = (0.0, RestOfGap::default());
+        let (mut total, mut sum) = (0.0, GapRemainder::default());
         for &j in cloud.pairs.gaps.list.row(list as usize) {
             let number = self.numbers[j as usize - cloud.fluid] as usize;
             let Some(there) = gaps.get(number).and_then(|gap| gap.fluid) else { continue };
@@ -152,13 +152,13 @@ impl Fill {
             sum.way += pair.value * (there.way + pair.x.length());
         }
         // A floor of zero keeps a gap above the surface dry.
-        let mean = || RestOfGap {
+        let mean = || GapRemainder {
             pressure: (sum.pressure / total).max(0.0),
             slope: sum.slope / total,
             density: sum.density / total,
             way: sum.way / total,
         };
-        (total > LEAST_SHARE).then(mean)
+        (total > MIN_SHARE).then(mean)
     }
 
     /// Continues pressures to the other sides of gaps.
@@ -183,6 +183,6 @@ impl Fill {
             return Some(if fall > 0.0 { (pressure - fall).max(0.0) } else { pressure });
         }
         let [total, pressure] = self.beyond[row - cloud.fluid];
-        (total > LEAST_SHARE).then(|| pressure / total)
+        (total > MIN_SHARE).then(|| pressure / total)
     }
 }

@@ -13,7 +13,7 @@ use crate::linalg::dyad;
 /// Square of the distance of the line from the centre of the particles, in their standard deviations, up to
 /// which the shares are changed.
 const OUTSIDE: f64 = 16.0;
-/// Least determinant of the moments of the particles that fixes a change, over that of a full support.
+/// Minimum determinant of the moments of the particles that fixes a change, over that of a full support.
 const FLAT: f64 = 1e-9;
 
 /// Gives a force on a particle, N, to itself and its opposite to those across the gap, as far as the gap is

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::fill::{BoundaryMotion, Fill, Gap, RestOfGap};
+use super::fill::{BoundaryMotion, Fill, Gap, GapRemainder};
 use super::moments::{GapPair, Surrounding, of_surface};
 use super::share::give;
 use crate::formulations::fluid::cloud::{FlowCloud, Group, PARTS};
@@ -43,7 +43,7 @@ impl GapPressure {
         for_each_block(rows, &mut Vec::new(), &|_, (gaps, particles): Rows<'_>| {
             for (gap, &particle) in gaps.iter_mut().zip(particles) {
                 *gap = Gap { particle, ..Gap::default() };
-                gap.fluid = RestOfGap::of_wet(cloud, *gravity, particle[0]);
+                gap.fluid = GapRemainder::of_wet(cloud, *gravity, particle[0]);
             }
         });
         if gaps.iter().all(|gap| gap.fluid.is_none_or(|fluid| fluid.pressure == 0.0)) {
@@ -76,7 +76,7 @@ impl GapPressure {
     fn press(&mut self, cloud: &FlowCloud, forces: &mut [DVec3]) {
         let Self { gaps, fill, across, .. } = self;
         for gap in gaps {
-            let Some(RestOfGap { pressure, slope, .. }) = gap.filled() else { continue };
+            let Some(GapRemainder { pressure, slope, .. }) = gap.filled() else { continue };
             let row = gap.particle[0] as usize;
             across.clear();
             across.extend(cloud.across_gap(gap.particle));

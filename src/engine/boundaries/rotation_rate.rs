@@ -11,12 +11,12 @@ use crate::rigid::{Drive, DrivenRotation, checked_axis};
 use crate::scene::{Expression, Select, Vec3};
 use crate::schedule::{Clock, StepError};
 
-/// Turns rigid bodies about an axis through their centre with a rate that is a function of time.
+/// Rotates rigid bodies about an axis through their centre. The angular velocity is a function of time.
 ///
-/// A roller that is brought to two turns a second: `Turn(on: Select(body: "roller"), rate:
+/// A roller that is accelerated to two revolutions a second: `RotationRate(on: Select(body: "roller"), rate:
 /// "4*pi*smoothstep(t/0.1)")`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename = "Turn")]
+#[serde(deny_unknown_fields, rename = "RotationRate")]
 pub struct PrescribedRotation {
     /// Rigid bodies, as a whole.
     pub on: Select,
@@ -32,7 +32,7 @@ const fn z_axis() -> Vec3 {
 }
 
 impl Plugin for PrescribedRotation {
-    const NAME: &'static str = "Turn";
+    const NAME: &'static str = "RotationRate";
     const REFERENCE: &'static str = "";
 
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
@@ -41,7 +41,7 @@ impl Plugin for PrescribedRotation {
         let (others, rigid) = split_rigid(&selection, sim)?;
         if let Some((id, _)) = others.parts.first() {
             let message = format!("body `{}` is not rigid", sim.body(*id).name);
-            let help = "`Velocity` with a function of place turns the particles of other bodies";
+            let help = "`Velocity` with a function of position rotates the particles of other bodies";
             return Err(SetupError::parameter("on", message, help));
         }
         for body in rigid {

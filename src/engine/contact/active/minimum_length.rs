@@ -2,17 +2,17 @@
 
 use crate::parallel::BlockSum;
 
-/// The least of lengths, m; infinite where there is none.
+/// The minimum of lengths, m; infinite where there is none.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::contact) struct Least(pub f64);
+pub(in crate::contact) struct MinimumLength(pub f64);
 
-impl Default for Least {
+impl Default for MinimumLength {
     fn default() -> Self {
         Self(f64::INFINITY)
     }
 }
 
-impl Least {
+impl MinimumLength {
     /// Takes in a length, m.
     #[inline]
     pub fn add_length(&mut self, length: f64) {
@@ -20,7 +20,7 @@ impl Least {
     }
 }
 
-impl BlockSum for Least {
+impl BlockSum for MinimumLength {
     fn add(&mut self, next: &Self) {
         self.add_length(next.0);
     }

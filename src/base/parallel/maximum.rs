@@ -7,9 +7,9 @@ use super::BlockSum;
 /// The maximum so far; NaN as soon as one number is NaN.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
-pub struct Largest(pub f64);
+pub struct Maximum(pub f64);
 
-impl Largest {
+impl Maximum {
     /// The maximum of non-negative numbers.
     #[inline]
     pub fn of(numbers: impl Iterator<Item = f64>) -> Self {
@@ -20,7 +20,7 @@ impl Largest {
     }
 }
 
-impl BlockSum for Largest {
+impl BlockSum for Maximum {
     #[inline]
     fn add(&mut self, next: &Self) {
         // `f64::max` is avoided, because it would discard NaN.
