@@ -8,7 +8,9 @@ use meshless::formulations::updated_lagrangian::UpdatedReference;
 use meshless::glam::DVec3;
 use meshless::scene::Source;
 use meshless::simulation::{Checkpoint, Simulation};
-use meshless::world::{BodyId, DeformationGradient, Mass, Position, ReferencePosition, Velocity};
+use meshless::world::{
+    BodyId, DeformationGradient, Mass, Position, ReferencePosition, SupportRadius, Velocity,
+};
 
 /// Updates often, so that short runs have many of them.
 const OFTEN: &str = "UpdatedLagrangian(update: Adaptive(change: 0.01))";
@@ -346,4 +348,23 @@ fn rubber_that_is_drawn_from_a_clamp_is_not_torn_by_updates() {
         let has_warned = warnings.iter().any(|text| text.contains("body `sheet` keeps its reference from"));
         assert_eq!(has_warned, warns, "{update}: {warnings:?}");
     }
+}
+
+/// Nobody sees the inside of a clamp: no larger support would find it neighbours, but would make the lists of
+/// all others longer, and the first update take four searches.
+#[test]
+fn particles_deep_in_a_clamp_keep_their_support() {
+    let text = r#"(dimension: Two, materials: {"rubber": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)},
+        bodies: [(name: "bar", material: "rubber", shape: Box(min: (0, 0), max: (0.04, 0.01)), spacing: 0.001,
+            formulation: UpdatedLagrangian(update: Every(1)), plugins: [hourglass_control()])],
+        conditions: [Fix(on: Select(within: Box(min: (0, 0), max: (0.01, 0.01)))), InitialVelocity(on: Select(), value: ("x", 0))],
+        time: (end: 1.0))"#;
+    let sim = after(&Source::new("clamped.ron", text.to_owned()), 5);
+    let support = sim.world().phase(sim.world().body(BodyId(0)).phase);
+    let support = support.read::<SupportRadius>().expect("support radii");
+    assert!(
+        support.iter().all(|own| own.0 == support[399].0),
+        "{:?}",
+        support.iter().map(|own| own.0).fold(0.0, f64::max)
+    );
 }

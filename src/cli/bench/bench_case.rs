@@ -14,6 +14,8 @@ pub struct BenchCase {
     spacing: fn(f64) -> f64,
     /// Overrides of the scene that define this case.
     set: &'static [(&'static str, BenchValue)],
+    /// Steps after which the work repeats.
+    pub cycle: u64,
 }
 
 /// A value of an override.
@@ -108,6 +110,7 @@ pub const BENCH_CASES: &[BenchCase] = &[
             ("bodies.block.spacing", Spacing),
             ("bodies.block.formulation", Text("TotalLagrangian(support: 2.2)")),
         ],
+        cycle: 1,
     },
     BenchCase {
         name: "solid-31-free",
@@ -119,6 +122,7 @@ pub const BENCH_CASES: &[BenchCase] = &[
             ("bodies.block.formulation", Text("TotalLagrangian(support: 2.2)")),
             ("bodies.block.plugins", Text("[]")),
         ],
+        cycle: 1,
     },
     BenchCase {
         name: "solid-31-term",
@@ -130,6 +134,7 @@ pub const BENCH_CASES: &[BenchCase] = &[
             ("bodies.block.formulation", Text("TotalLagrangian(support: 2.2)")),
             ("bodies.block.plugins", Text("[hourglass_control(), artificial_viscosity()]")),
         ],
+        cycle: 1,
     },
     BenchCase {
         name: "solid-updated",
@@ -140,6 +145,7 @@ pub const BENCH_CASES: &[BenchCase] = &[
             ("bodies.block.spacing", Spacing),
             ("bodies.block.formulation", Text("UpdatedLagrangian(support: 2.2)")),
         ],
+        cycle: 1,
     },
     BenchCase {
         name: "solid-updated-3",
@@ -150,6 +156,7 @@ pub const BENCH_CASES: &[BenchCase] = &[
             ("bodies.block.spacing", Spacing),
             ("bodies.block.formulation", Text("UpdatedLagrangian(support: 2.2, update: Every(3))")),
         ],
+        cycle: 3,
     },
     BenchCase {
         name: "solid-updated-hessian",
@@ -161,6 +168,7 @@ pub const BENCH_CASES: &[BenchCase] = &[
             ("bodies.block.formulation", Text("UpdatedLagrangian(support: 2.2)")),
             ("bodies.block.plugins", Text("[hessian_stabilization()]")),
         ],
+        cycle: 1,
     },
     BenchCase {
         name: "solid-54",
@@ -168,6 +176,7 @@ pub const BENCH_CASES: &[BenchCase] = &[
         scene: BLOCK,
         spacing: cube,
         set: &[("bodies.block.spacing", Spacing)],
+        cycle: 1,
     },
     BenchCase {
         name: "solid-2d",
@@ -175,6 +184,7 @@ pub const BENCH_CASES: &[BenchCase] = &[
         scene: STRIP,
         spacing: square,
         set: &[("bodies.strip.spacing", Spacing)],
+        cycle: 1,
     },
     BenchCase {
         name: "eulerian",
@@ -182,6 +192,7 @@ pub const BENCH_CASES: &[BenchCase] = &[
         scene: BLOCK,
         spacing: cube,
         set: &[("bodies.block.spacing", Spacing), ("bodies.block.formulation", Text("Eulerian()"))],
+        cycle: 1,
     },
     BenchCase {
         name: "eulerian-2d",
@@ -189,6 +200,7 @@ pub const BENCH_CASES: &[BenchCase] = &[
         scene: STRIP,
         spacing: square,
         set: &[("bodies.strip.spacing", Spacing), ("bodies.strip.formulation", Text("Eulerian()"))],
+        cycle: 1,
     },
     BenchCase {
         name: "dam-80",
@@ -200,6 +212,7 @@ pub const BENCH_CASES: &[BenchCase] = &[
             ("bodies.tank.spacing", Spacing),
             ("bodies.tank.shape", Tank(3)),
         ],
+        cycle: 1,
     },
     BenchCase {
         name: "dam-80-double",
@@ -212,6 +225,7 @@ pub const BENCH_CASES: &[BenchCase] = &[
             ("bodies.tank.spacing", Spacing),
             ("bodies.tank.shape", Tank(3)),
         ],
+        cycle: 1,
     },
     BenchCase {
         name: "dam-170",
@@ -224,6 +238,7 @@ pub const BENCH_CASES: &[BenchCase] = &[
             ("bodies.tank.shape", Tank(3)),
             ("bodies.water.formulation", Text("Fluid(support: 3.4)")),
         ],
+        cycle: 1,
     },
     BenchCase {
         name: "dam-2d",
@@ -235,6 +250,7 @@ pub const BENCH_CASES: &[BenchCase] = &[
             ("bodies.tank.spacing", Spacing),
             ("bodies.tank.shape", Tank(2)),
         ],
+        cycle: 1,
     },
     BenchCase {
         name: "dam-2d-delta",
@@ -248,6 +264,7 @@ pub const BENCH_CASES: &[BenchCase] = &[
             ("bodies.water.formulation", Text("Fluid")),
             ("bodies.water.plugins", Text("[density_diffusion()]")),
         ],
+        cycle: 1,
     },
     BenchCase {
         name: "dam-plate",
@@ -260,6 +277,7 @@ pub const BENCH_CASES: &[BenchCase] = &[
             ("bodies.tank.spacing", Spacing),
             ("bodies.tank.shape", Tank(2)),
         ],
+        cycle: 1,
     },
     BenchCase {
         name: "abrasive",
@@ -267,6 +285,7 @@ pub const BENCH_CASES: &[BenchCase] = &[
         scene: ABRASIVE,
         spacing: channel,
         set: &[("parameters.dx", Spacing)],
+        cycle: 1,
     },
     BenchCase {
         name: "abrasive-fluid",
@@ -274,6 +293,7 @@ pub const BENCH_CASES: &[BenchCase] = &[
         scene: CHANNEL_FLUID,
         spacing: channel,
         set: &[("parameters.dx", Spacing)],
+        cycle: 1,
     },
     BenchCase {
         name: "abrasive-floor",
@@ -281,6 +301,7 @@ pub const BENCH_CASES: &[BenchCase] = &[
         scene: CHANNEL_FLOOR,
         spacing: channel,
         set: &[("parameters.dx", Spacing)],
+        cycle: 1,
     },
     BenchCase {
         name: "abrasive-grains",
@@ -288,5 +309,6 @@ pub const BENCH_CASES: &[BenchCase] = &[
         scene: CHANNEL_GRAINS,
         spacing: channel,
         set: &[("parameters.dx", Spacing)],
+        cycle: 1,
     },
 ];

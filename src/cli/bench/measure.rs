@@ -15,7 +15,7 @@ use super::super::ranks::together;
 use super::bench_case::BenchCase;
 use super::machine;
 
-/// Steps before the timing, in which lists and buffers reach their size.
+/// Cycles of steps before the timing, in which lists and buffers reach their size.
 const WARM_UP: u64 = 3;
 
 /// The measurement to carry out.
@@ -103,14 +103,16 @@ impl Measurement {
         sim.step().map_err(|error| failed(&error))?;
         let first_step_after = begun.elapsed().as_secs_f64();
         let after = resident_bytes();
-        while sim.clock().step < WARM_UP {
+        while sim.clock().step < WARM_UP * case.cycle {
             sim.step().map_err(|error| failed(&error))?;
         }
         let (first, timers, short) = (sim.clock().step, timers(&sim), short_steps(&sim));
         let (processor, traffic) = (processor_seconds(), ranks::traffic());
         let begun = Instant::now();
         while ranks::any(begun.elapsed() < duration) || sim.clock().step == first {
-            sim.step().map_err(|error| failed(&error))?;
+            for _ in 0..case.cycle {
+                sim.step().map_err(|error| failed(&error))?;
+            }
         }
         let seconds = begun.elapsed().as_secs_f64();
         let spent = processor.zip(processor_seconds()).map(|(before, after)| after - before);

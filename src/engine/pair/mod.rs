@@ -23,6 +23,7 @@ pub use batch::{Extras, FourPairs, FourVectors, Neighbor, PairBatch, RowSlots};
 pub(crate) use block::{BlockPairs, CHUNK, EightPairs, TermSums};
 pub(crate) use body_terms::BodyTerms;
 pub(crate) use of_phase::{AllSums, BoundTerms, PhaseTerms, TermRows};
+pub(crate) use pass::add_present_pair_systems;
 pub(crate) use pass::with_batch;
 pub use pass::{PairRows, PairSource, add_pair_systems};
 pub(crate) use rate_bounds::RateBounds;

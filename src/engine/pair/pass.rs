@@ -55,7 +55,16 @@ pub fn add_pair_systems(
     phase: PhaseId,
     source: impl PairSource,
 ) -> Result<(), SetupError> {
-    let Some(terms) = PhaseTerms::take(sim, phase)? else { return Ok(()) };
+    add_present_pair_systems(sim, phase, source).map(|_| ())
+}
+
+/// The same; returns whether there are terms.
+pub(crate) fn add_present_pair_systems(
+    sim: &mut SimBuilder<'_>,
+    phase: PhaseId,
+    source: impl PairSource,
+) -> Result<bool, SetupError> {
+    let Some(terms) = PhaseTerms::take(sim, phase)? else { return Ok(false) };
     let bodies = terms.bodies();
     let (access, of_source, reads) = (terms.access(sim, phase), source.access(), terms.reads);
     let pass = PairPass { phase, source, terms, bodies };
@@ -70,7 +79,7 @@ pub fn add_pair_systems(
         .touches_all(of_source)
         .touches_all(access);
     sim.add_system(if reads.velocity { system.reads_near::<Velocity>() } else { system });
-    Ok(())
+    Ok(true)
 }
 
 /// The pass over all pairs of a phase.

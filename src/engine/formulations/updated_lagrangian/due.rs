@@ -105,7 +105,7 @@ fn min_stretch(deformation: &[DeformationGradient]) -> f64 {
 /// The largest distance of two particles that were closer than that at the start, m, and are beside each
 /// other in the lists.
 fn farthest_beside(rows: Range<usize>, packed: &UpdatedRows, beside: f64) -> f64 {
-    let (sites, bonds, start) = (packed.pair_sites(), packed.bonds(), rows.start);
+    let (sites, bonds, start) = (packed.original_sites(), packed.bonds(), rows.start);
     let largest: Maximum = sum_over_blocks(&sites[rows], &|first, own: &[PackedParticle]| {
         let first = start + first;
         Maximum(run_hot(LargestDistance {

@@ -37,11 +37,16 @@ pub(super) fn widen(
     }
     for kernel in &packed.kernels {
         let Some(first) = kernel.support else { continue };
-        for row in world.body(kernel.body).rows.clone().filter(|&row| packed.volume[row] > 0.0) {
+        let rows = world.body(kernel.body).rows.clone();
+        // Particles that no other one sees have no neighbours in any support.
+        let hidden = packed.held.hidden_of(kernel.body);
+        let is_hidden = |row: &usize| hidden.binary_search(&((row - rows.start) as u32)).is_ok();
+        for row in rows.clone().filter(|&row| packed.volume[row] > 0.0) {
             let inverse = &packed.bonds.inverse_moment[row];
             let grown = GROWTH * support[row].0;
             if grown <= MAX_SUPPORT * first
                 && (*inverse == Sym3::ZERO || is_below(FEW, inverse, &packed.ellipsoids[row]))
+                && !is_hidden(&row)
             {
                 support[row].0 = grown;
                 has_grown = true;

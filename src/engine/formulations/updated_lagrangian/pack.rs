@@ -37,6 +37,7 @@ impl UpdatedRows {
         let view = world.phase(phase);
         let position = view.read_near::<Position>()?;
         let original = view.read_near::<ReferencePosition>()?;
+        let needs_pair_sites = self.needs_pair_sites();
         let Self { pair_sites, control, volume, ghosts, .. } = self;
         let (position, original) = (&position[..], &original[..]);
         let fill = |sites: &mut [PackedParticle], origin, volume: &[f64]| {
@@ -53,7 +54,9 @@ impl UpdatedRows {
             );
             ghosts.fill(sites, image(origin));
         };
-        fill(pair_sites, DVec3::ZERO, volume);
+        if needs_pair_sites {
+            fill(pair_sites, DVec3::ZERO, volume);
+        }
         if control.has_sums() {
             fill(&mut control.sites, control.origin, &control.volume);
         }

@@ -13,7 +13,7 @@ use super::system::UpdatedSolids;
 use super::update::Update;
 use crate::formulations::bonded::{BodySetUp, BondPairs};
 use crate::kernels::KernelName;
-use crate::pair::add_pair_systems;
+use crate::pair::add_present_pair_systems;
 use crate::plugin::{BodyKind, BodyPlan, Formulation, Offer, SetupError, SimBuilder};
 use crate::scene::Dimension;
 use crate::schedule::{Mode, Stage, System};
@@ -112,7 +112,6 @@ impl Formulation for UpdatedLagrangian {
         let change = sim.share(ForceChange::default());
         let system = UpdatedSolids::new(phase, plane, solids, rules, change);
         let first_lists = UpdatedSetUp::of(phase, first, system.is_stabilized(), sim);
-        sim.add_setup(move |setup| first_lists.run(setup));
         sim.add_system(gradient(phase, system).touches_all(state));
         let force = UpdatedForce { phase, plane, gravity: sim.gravity(), change };
         let force = System::new(Stage::Rates, FORCE, force).on_phases([phase]).reads::<Mass>();
@@ -122,7 +121,9 @@ impl Formulation for UpdatedLagrangian {
         let change = System::new(Stage::PostStep, FORCE_CHANGE, ChangeForces { phase, change });
         // Relaxation looks at the forces of the step.
         sim.add_system(change.on_phases([phase]).touches(Force::NAME, Mode::Adds).after_any("local_damping"));
-        add_pair_systems(sim, phase, BondPairs::<UpdatedRows>::of(phase))
+        let has_pair_terms = add_present_pair_systems(sim, phase, BondPairs::<UpdatedRows>::of(phase))?;
+        sim.add_setup(move |setup| first_lists.run(setup, has_pair_terms));
+        Ok(())
     }
 }
 

@@ -29,6 +29,8 @@ pub(super) struct UpdatedRows {
     /// Original position with the volume V, and displacement since the start: what pair terms see where a
     /// reference has been updated.
     pub pair_sites: Vec<PackedParticle>,
+    /// Whether there are pair terms.
+    pub has_pair_terms: bool,
     /// F_r of the real rows.
     pub gradient: Vec<DMat3>,
     /// Supports of the real rows.
@@ -65,6 +67,17 @@ impl UpdatedRows {
     /// Whether a body has another reference than at the start.
     pub fn has_followed(&self) -> bool {
         self.follows.contains(&true) || self.control.has_sums()
+    }
+
+    /// Whether the sites of pair terms are needed beside those of the stabilizers.
+    pub fn needs_pair_sites(&self) -> bool {
+        self.has_pair_terms || !self.control.has_sums()
+    }
+
+    /// Original places and displacements since the start of every row; the volumes are those of the reference
+    /// or of the stabilizers, and zero of what has been removed.
+    pub fn original_sites(&self) -> &[PackedParticle] {
+        if self.needs_pair_sites() { self.pair_sites() } else { &self.control.sites }
     }
 
     /// Gives all ranks the stresses that each has computed for its own rows.

@@ -73,11 +73,15 @@ impl UpdatedRows {
         let mut bodies = Vec::with_capacity(self.kernels.len());
         for (k, (kernel, repeats)) in self.kernels.iter().zip(&self.repeats).enumerate() {
             let rows = world.body(kernel.body).rows.clone();
-            let PointBounds { low, high } = bounds(&position[rows.clone()]);
-            let radii = support[rows.clone()].iter().zip(&self.ellipsoids[rows.clone()]);
-            let widest = radii.map(|(support, own)| support * own.longest).fold(0.0, f64::max);
-            let (repeats, reach) = follow(repeats, low, high, widest);
-            let ghost_rows = self.ghosts.add(rows.clone(), position, reach, &repeats);
+            let ghost_rows = if repeats.is_empty() {
+                self.ghosts.add(rows.clone(), position, 0.0, &[])
+            } else {
+                let PointBounds { low, high } = bounds(&position[rows.clone()]);
+                let radii = support[rows.clone()].iter().zip(&self.ellipsoids[rows.clone()]);
+                let widest = radii.map(|(support, own)| support * own.longest).fold(0.0, f64::max);
+                let (repeats, reach) = follow(repeats, low, high, widest);
+                self.ghosts.add(rows.clone(), position, reach, &repeats)
+            };
             let hidden = self.held.hidden_of(kernel.body);
             bodies.push(UpdatedBody { body: k, rows, ghost_rows, kernel: kernel.kernel, hidden });
         }
@@ -144,7 +148,7 @@ impl UpdatedRows {
             self.follows.push(!present.is_original(at_start, &self.gradient, rows));
         }
         self.weigh_control(world, original, bytemuck::cast_slice(&start), failed);
-        if self.has_followed() {
+        if self.has_followed() && self.needs_pair_sites() {
             self.pair_sites.resize(self.sites.len(), PackedParticle::default());
         }
         Ok(())

@@ -39,12 +39,12 @@ impl UpdatedSetUp {
     }
 
     /// Fills the columns of the reference with those of the start, and makes its lists.
-    pub fn run(self, setup: &mut Setup<'_>) -> Result<(), SetupError> {
+    pub fn run(self, setup: &mut Setup<'_>, has_pair_terms: bool) -> Result<(), SetupError> {
         setup.warnings.extend(self.held.warnings.iter().cloned());
         self.fill_columns(setup.world).map_err(|error| SetupError::internal(&error))?;
         let phase = self.phase;
         let estimates: Vec<StepEstimate> = self.bodies.iter().map(|body| body.estimate).collect();
-        let mut rows = self.rows(setup.world);
+        let mut rows = UpdatedRows { has_pair_terms, ..self.rows(setup.world) };
         rows.renew(setup.world, phase, &estimates, &[]).map_err(|RenewError { body, error }| {
             let help = "use a larger `support`, or more particles across the body";
             SetupError::parameter(format!("bodies[{}].formulation", body.0), error.to_string(), help)
@@ -87,6 +87,7 @@ impl UpdatedSetUp {
             origin: DVec3::ZERO,
             sites: Vec::new(),
             pair_sites: Vec::new(),
+            has_pair_terms: false,
             gradient: Vec::new(),
             ellipsoids: Vec::new(),
             volume: Vec::new(),

@@ -36,6 +36,8 @@ const SHARE: f64 = 0.75;
 const TIMES: usize = 3;
 /// Largest distance of a reference place from its particle, over the smoothing length.
 const FARTHEST: f64 = 0.25;
+/// Prefetch distance in bonds.
+const AHEAD: usize = 32;
 
 /// Input of the smoothing of the reference positions of a body.
 #[derive(Clone, Copy)]
@@ -191,21 +193,64 @@ impl PlaneOrSpace for DisplacementSums<'_> {
             if own.place.0[3] == 0.0 {
                 continue;
             }
-            let (mut columns, mut place, mut total) = ([Lanes4::ZERO; D], Lanes4::ZERO, 0.0);
-            for bond in bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize {
-                let other = &held[bonds.neighbors[bond] as usize];
-                let weight = f64::from(bonds.weights[bond]) * other.place.0[3];
-                for axis in 0..D {
-                    columns[axis] = a.scale_add(weight, other.columns[axis], columns[axis]);
-                }
-                place = a.scale_add(weight, other.place, place);
-                total += weight;
-            }
+            let sums = ExpectedSum::<D>::over(a, bonds, held, i);
+            let total = sums.total;
             if total > 0.0 {
-                let sum = own.displacement_sum(a, &columns, place, total);
+                let sum = own.displacement_sum(a, &sums);
                 *own_sum = DisplacementSum { sum: Lanes4::new(sum, total), factor: SHARE / total };
             }
         }
+    }
+}
+
+/// Sums over the neighbours of a particle, weighted with V_j w_ij. There are two of them in the loop, for
+/// every other bond, so that additions need not wait for each other.
+struct ExpectedSum<const D: usize> {
+    columns: [Lanes4; D],
+    place: Lanes4,
+    /// `sum_j V_j w_ij`.
+    total: f64,
+}
+
+impl<const D: usize> ExpectedSum<D> {
+    const ZERO: Self = Self { columns: [Lanes4::ZERO; D], place: Lanes4::ZERO, total: 0.0 };
+
+    /// The sums over the bonds of row `i`.
+    #[inline(always)]
+    fn over<A: FourLanes>(a: A, bonds: &Bonds, held: &[Expected], i: usize) -> Self {
+        let row = bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize;
+        let ahead = &bonds.neighbors[(row.start + AHEAD).min(bonds.neighbors.len())..];
+        let (mut even, mut odd) = (Self::ZERO, Self::ZERO);
+        let (pairs, last) = bonds.neighbors[row.clone()].as_chunks::<2>();
+        let (weights, last_weight) = bonds.weights[row].as_chunks::<2>();
+        for n in 0..pairs.len() {
+            let (j, weight) = (pairs[n], weights[n]);
+            if 2 * n + 1 < ahead.len() {
+                a.prefetch(held, ahead[2 * n] as usize);
+                a.prefetch(held, ahead[2 * n + 1] as usize);
+            }
+            even.add(a, &held[j[0] as usize], weight[0]);
+            odd.add(a, &held[j[1] as usize], weight[1]);
+        }
+        if let ([j], [weight]) = (last, last_weight) {
+            even.add(a, &held[*j as usize], *weight);
+        }
+        for axis in 0..D {
+            even.columns[axis] = a.add(even.columns[axis], odd.columns[axis]);
+        }
+        even.place = a.add(even.place, odd.place);
+        even.total += odd.total;
+        even
+    }
+
+    #[inline(always)]
+    fn add<A: FourLanes>(&mut self, a: A, other: &Expected, weight: f32) {
+        let weight = f64::from(weight) * other.place.0[3];
+        for axis in 0..D {
+            self.columns[axis] = a.scale_add(weight, other.columns[axis], self.columns[axis]);
+        }
+        self.place = a.scale_add(weight, other.place, self.place);
+        self.total += weight;
     }
 }
 
@@ -215,12 +260,10 @@ impl Expected {
     fn displacement_sum<A: FourLanes, const D: usize>(
         &self,
         a: A,
-        columns: &[Lanes4; D],
-        place: Lanes4,
-        total: f64,
+        ExpectedSum { columns, place, total }: &ExpectedSum<D>,
     ) -> DVec3 {
         // -F_i / 2 acts on X_j - X_i, of which `place` has X_i already.
-        let mut sum = a.scale_add(-total, self.place, place);
+        let mut sum = a.scale_add(-total, self.place, *place);
         for axis in 0..D {
             let then = self.columns[axis].0[3];
             sum = a.scale_add(-then, columns[axis], sum);
@@ -253,10 +296,22 @@ impl PlaneOrSpace for Moves<'_> {
             let mut change = sum;
             if !is_first && factor > 0.0 {
                 change = a.scale_add(-sum.0[3], own, change);
-                for bond in bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize {
-                    let other = moved[bonds.neighbors[bond] as usize];
-                    change = a.scale_add(f64::from(bonds.weights[bond]) * other.0[3], other, change);
+                let row = bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize;
+                let (fours, neighbors) = bonds.neighbors[row.clone()].as_chunks::<4>();
+                let (four_weights, weights) = bonds.weights[row].as_chunks::<4>();
+                // Four sums, which need not wait for each other.
+                let mut sums = [change, Lanes4::ZERO, Lanes4::ZERO, Lanes4::ZERO];
+                for n in 0..fours.len() {
+                    for k in 0..4 {
+                        let other = moved[fours[n][k] as usize];
+                        sums[k] = a.scale_add(f64::from(four_weights[n][k]) * other.0[3], other, sums[k]);
+                    }
                 }
+                for n in 0..neighbors.len() {
+                    let other = moved[neighbors[n] as usize];
+                    sums[n] = a.scale_add(f64::from(weights[n]) * other.0[3], other, sums[n]);
+                }
+                change = a.add(a.add(sums[0], sums[1]), a.add(sums[2], sums[3]));
             }
             let to = a.scale_add(factor, change, own);
             let square = to.0[0] * to.0[0] + to.0[1] * to.0[1] + to.0[2] * to.0[2];

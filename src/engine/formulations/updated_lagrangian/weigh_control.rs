@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::phase::UpdatedRows;
 use crate::formulations::bonded::{BodyKernel, PackedParticle};
 use crate::neighbors::bounds;
-use crate::solids::CorrectedStress;
+use crate::solids::{CorrectedStress, fill_rows};
 use crate::world::World;
 
 impl UpdatedRows {
@@ -26,10 +26,12 @@ impl UpdatedRows {
         if !control.has_sums() {
             return;
         }
-        control.origin = bounds(original).middle();
-        let measure = UndilatedMeasure { volume, start, axes: world.dimension().count() as f64 };
-        control.volume.clear();
-        control.volume.extend((0..volume.len()).map(|row| measure.volume(row)));
+        if control.sites.is_empty() {
+            control.origin = bounds(original).middle();
+        }
+        let measure = UndilatedMeasure { volume, start, axes: world.dimension().count() };
+        control.volume.resize(volume.len(), 0.0);
+        fill_rows(&mut control.volume, 0, |row| measure.volume(row));
         failed.iter().for_each(|&row| control.volume[row as usize] = 0.0);
         control.bonds.share_topology(bonds);
         let scale = |row| measure.scale(row);
@@ -55,7 +57,7 @@ struct UndilatedMeasure<'a> {
     /// V_0, m3.
     start: &'a [f64],
     /// d.
-    axes: f64,
+    axes: usize,
 }
 
 impl UndilatedMeasure<'_> {
@@ -66,7 +68,8 @@ impl UndilatedMeasure<'_> {
     /// Factor of pair vectors: they grow as the axes do, and the distance stays.
     fn scale(&self, row: usize) -> f64 {
         let dilatation = self.dilatation(row);
-        if dilatation > 0.0 { dilatation.powf(-0.5 / self.axes) } else { 1.0 }
+        let root = if dilatation > 0.0 { dilatation.sqrt() } else { 1.0 };
+        (if self.axes == 3 { root.cbrt() } else { root.sqrt() }).recip()
     }
 
     /// Volume, m3: the factor `J^(-1/2)` of the kernel of a bond is taken back half by either end.
