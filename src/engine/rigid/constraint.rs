@@ -80,8 +80,12 @@ impl Constraint {
 
     /// Whether the whole motion is prescribed.
     pub fn is_complete(&self) -> bool {
-        self.free_axes() == DVec3::ZERO
-            && matches!(self.turning, RotationConstraint::Held | RotationConstraint::Driven(_))
+        self.free_axes() == DVec3::ZERO && self.turns_as_prescribed()
+    }
+
+    /// Whether no torque turns it.
+    pub fn turns_as_prescribed(&self) -> bool {
+        matches!(self.turning, RotationConstraint::Held | RotationConstraint::Driven(_))
     }
 
     /// Whether it does not turn at all.

@@ -12,7 +12,7 @@ use crate::formulations::fluid::rotation::Spin;
 use crate::formulations::fluid::setup::advice;
 use crate::formulations::fluid::walls::{
     EdgeForces, EdgeMotion, GapPressure, PreviousVelocity, RangeShortfall, Repulsion, WallCompression,
-    WallEnds, WallState,
+    WallEnds, WallShapes, WallState,
 };
 use crate::formulations::fluid::warnings::watch;
 use crate::pair::{BodyTerms, PhaseTerms, add_work_systems};
@@ -31,6 +31,8 @@ const COMPRESSION: &str = "fluid_compression";
 const WALL_COMPRESSION: &str = "wall_compression";
 /// Label of the system that finds how walls move at edges.
 const EDGE_MOTION: &str = "motion_at_edges";
+/// Label of the system that divides forces at edges among the faces there.
+const EDGE_FORCES: &str = "forces_at_edges";
 /// Label of the system that lets fluids go on past the ends of walls.
 const WALL_ENDS: &str = "wall_ends";
 /// Label of the system that gives walls their pressure.
@@ -219,9 +221,9 @@ fn add_boundaries(sim: &mut SimBuilder<'_>, groups: &[Group], boundaries: Vec<Ph
                 .writes::<Pressure>()
                 .writes::<PreviousVelocity>(),
         );
-        if groups.iter().filter(|group| group.is_wall()).count() > 1 {
+        if WallShapes::are_possible(groups, sim) {
             sim.add_system(
-                System::new(Stage::Boundary, "forces_at_edges", EdgeForces)
+                System::new(Stage::Boundary, EDGE_FORCES, EdgeForces)
                     .on_phases(boundaries.iter().copied())
                     .in_long_steps()
                     .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
@@ -240,9 +242,11 @@ fn add_boundaries(sim: &mut SimBuilder<'_>, groups: &[Group], boundaries: Vec<Ph
                 .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
                 .reads_own_packed()
                 .touches_packed(FLOW_LOADS, Mode::ReadsNear)
+                .touches_packed(EDGES, Mode::Reads)
                 .touches_packed(GAP_FORCES, Mode::Writes)
                 .reads_near::<Velocity>()
-                .after(WALL_PRESSURE),
+                .after(WALL_PRESSURE)
+                .after_any(EDGE_FORCES),
         );
     }
     for phase in boundaries {

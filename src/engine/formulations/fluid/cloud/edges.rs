@@ -10,6 +10,8 @@ pub struct BoundaryEdges {
     pub fronts: Vec<Front>,
     /// In the order of rows.
     pub particles: Vec<EdgeParticle>,
+    /// Whether there are edges of rigid bodies whose motion is prescribed.
+    pub are_of_bodies: bool,
 }
 
 /// The face of a boundary before a fluid particle.

@@ -51,7 +51,7 @@ pub use neighborhood::{Cluster, Neighborhood};
 pub use neighbors::{ListPosition, NEIGHBORS, Neighbors};
 pub use other_particles::OtherParticles;
 pub use parts::{ACCOUNTS, PARTS};
-pub use repelled::{Repelled, Shares};
+pub use repelled::{LoadCarrier, Repelled, Shares};
 pub use row_pass::{NearPairs, RowPass};
 pub use rows::RowSums;
 pub use shared::{

@@ -20,18 +20,48 @@ pub struct Repelled {
 }
 
 /// Shares of particles near a point in what acts there, `V_w W (1 + (x_w - x_i - mean) . slope) / total`:
-/// they add up to one, and their centre is the point.
+/// they add up to one, and their centre is the point, if these particles carry it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Shares {
     pub total: f64,
     pub mean: DVec3,
     pub slope: DVec3,
-    /// The particle that carries all of it, if there is one.
-    pub only: Option<u32>,
+    /// What carries it.
+    pub carrier: LoadCarrier,
+}
+
+/// What carries a force at a point beside a body.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LoadCarrier {
+    /// The particles near the point, by their shares.
+    #[default]
+    Near,
+    /// One particle, as a row of the cloud, on the line of the force.
+    Particle(u32),
+    /// The whole of a rigid body, of which this is the nearest particle.
+    Body(u32),
+}
+
+impl LoadCarrier {
+    fn to_words(self) -> [u64; 2] {
+        match self {
+            Self::Near => [0, 0],
+            Self::Particle(row) => [1, u64::from(row)],
+            Self::Body(row) => [2, u64::from(row)],
+        }
+    }
+
+    fn of_words([kind, row]: [u64; 2]) -> Self {
+        match kind {
+            0 => Self::Near,
+            1 => Self::Particle(row as u32),
+            _ => Self::Body(row as u32),
+        }
+    }
 }
 
 /// Numbers of a repelled particle as ranks exchange them.
-const WORDS: usize = 14;
+const WORDS: usize = 15;
 
 impl Repelled {
     /// Gets those of all ranks, in the order of rows.
@@ -41,11 +71,11 @@ impl Repelled {
     }
 
     fn to_words(self) -> [u64; WORDS] {
-        let Self { i, boundary, distance, force, shares: Shares { total, mean, slope, only } } = self;
+        let Self { i, boundary, distance, force, shares: Shares { total, mean, slope, carrier } } = self;
         let numbers =
             [distance, total].into_iter().chain([force, mean, slope].into_iter().flat_map(|v| v.to_array()));
-        let only = only.map_or(u64::MAX, u64::from);
-        let mut words = [i as u64, boundary as u64, only].into_iter().chain(numbers.map(f64::to_bits));
+        let [kind, row] = carrier.to_words();
+        let mut words = [i as u64, boundary as u64, kind, row].into_iter().chain(numbers.map(f64::to_bits));
         std::array::from_fn(|_| words.next().unwrap_or_default())
     }
 
@@ -53,16 +83,16 @@ impl Repelled {
         let number = |k: usize| f64::from_bits(words[k]);
         let vector = |k: usize| DVec3::new(number(k), number(k + 1), number(k + 2));
         let shares = Shares {
-            total: number(4),
-            mean: vector(8),
-            slope: vector(11),
-            only: u32::try_from(words[2]).ok(),
+            total: number(5),
+            mean: vector(9),
+            slope: vector(12),
+            carrier: LoadCarrier::of_words([words[2], words[3]]),
         };
         Self {
             i: words[0] as usize,
             boundary: words[1] as usize,
-            distance: number(3),
-            force: vector(5),
+            distance: number(4),
+            force: vector(6),
             shares,
         }
     }
@@ -74,12 +104,12 @@ mod tests {
 
     #[test]
     fn what_is_exchanged_is_what_was_there() {
-        for only in [None, Some(7)] {
+        for carrier in [LoadCarrier::Near, LoadCarrier::Particle(7), LoadCarrier::Body(u32::MAX)] {
             let shares = Shares {
                 total: 0.3,
                 mean: DVec3::new(1.0, -2.0, 3.0),
                 slope: DVec3::new(-0.0, 5.0, 6.0),
-                only,
+                carrier,
             };
             let repelled =
                 Repelled { i: 3, boundary: 90, distance: 1e-3, force: DVec3::new(7.0, 8.0, 9.0), shares };

@@ -7,4 +7,4 @@ mod spin;
 mod body_gradient;
 
 pub use affine::affine;
-pub use spin::Spin;
+pub use spin::{Spin, rotation};

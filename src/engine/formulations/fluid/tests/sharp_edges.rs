@@ -10,11 +10,21 @@ use crate::world::{Force, Mass, Position, Velocity};
 
 const BOX: &str = "Box(min: (-0.3, -0.2), max: (0.3, 0.2))";
 const PLATE: &str = "Box(min: (-0.4, -0.05), max: (0.4, 0.05))";
+/// Wedges, whose inclined sides are stairs of the square lattice: single particles come within the range of
+/// their repulsion, at edges where no shares of the particles nearby have their centre at the place of the
+/// force.
+const WEDGE: &str = "Polygon(points: [(-0.35, -0.2), (0.35, -0.2), (0.0, 0.2)])";
+const ACUTE: &str = "Polygon(points: [(-0.4, -0.1), (0.4, -0.1), (0.4, 0.1)])";
 /// In space.
 const BLOCK: &str = "Box(min: (-0.2, -0.1, -0.2), max: (0.2, 0.1, 0.2))";
 
 /// A drop that moves, turns and is stretched, with a body in it that turns faster, its edges ahead.
 fn drop_around(shape: &str, viscosity: &str, spacing: f64) -> Simulation {
+    drop_in(shape, viscosity, spacing, "time: (end: 0.3, sub_steps: 1)")
+}
+
+/// The same in steps of the `time` of a scene.
+fn drop_in(shape: &str, viscosity: &str, spacing: f64, time: &str) -> Simulation {
     let space = shape == BLOCK;
     let (name, spin, start) = if space {
         ("Three", "(1, -1, 2)", "(\"0.3 - y\", \"0.1 + 0.5*x\", \"0.5*y\")")
@@ -31,7 +41,7 @@ fn drop_around(shape: &str, viscosity: &str, spacing: f64) -> Simulation {
                 (name: "core", material: "rubber", spacing: {spacing}, formulation: Rigid(spin: {spin}), shape: {shape}),
             ],
             conditions: [InitialVelocity(on: Select(body: "oil"), value: {start})],
-            time: (end: 0.3, sub_steps: 1))"#
+            {time})"#
     ))
 }
 
@@ -52,12 +62,14 @@ fn momenta(sim: &Simulation, about: DVec3) -> [DVec3; 2] {
     sums
 }
 
+/// Where no shares of the particles nearby fitted it, the opposite of the repulsion acted beside the particle
+/// that is repelled: the angular momentum changed by 6e-4 of it around the wedge, 2e-4 around the block.
 #[test]
 fn bodies_with_sharp_edges_and_the_fluid_around_keep_their_momenta() {
     let about = DVec3::new(0.7, -0.4, 0.0);
     for viscosity in ["", ", viscosity: 30.0"] {
-        for shape in [BOX, PLATE] {
-            let mut sim = drop_around(shape, viscosity, 0.05);
+        for shape in [BOX, PLATE, WEDGE, ACUTE, BLOCK] {
+            let mut sim = drop_around(shape, viscosity, if shape == BLOCK { 0.1 } else { 0.05 });
             sim.start().expect("a start");
             let before = momenta(&sim, about);
             sim.run(|_| true).expect("a run");
@@ -65,7 +77,7 @@ fn bodies_with_sharp_edges_and_the_fluid_around_keep_their_momenta() {
             let errors = [0, 1].map(|k| (after[k] - before[k]).length() / before[k].length());
             assert!(errors[0] < 1e-12, "{shape}{viscosity}: {errors:?}");
             // Friction in a fluid without spin is not central; that of this water is nothing.
-            assert!(errors[1] < 1e-9, "{shape}{viscosity}: {errors:?}");
+            assert!(errors[1] < 1e-12, "{shape}{viscosity}: {errors:?}");
             let balance = sim.ledger().relative_error().abs();
             assert!(balance < 1e-3, "{shape}{viscosity}: {balance}");
         }
@@ -76,29 +88,56 @@ fn bodies_with_sharp_edges_and_the_fluid_around_keep_their_momenta() {
 /// the body, edges and all.
 #[test]
 fn the_torque_on_a_body_with_sharp_edges_is_that_on_the_fluid() {
-    for shape in [BOX, PLATE, BLOCK] {
-        let spacing = if shape == BLOCK { 0.1 } else { 0.05 };
-        let mut sim = drop_around(shape, ", viscosity: 30.0", spacing);
-        let mut largest = 0.0_f64;
-        sim.run(|sim| {
-            let (x, f) = (column::<Position>(sim, 0), column::<Force>(sim, 0));
-            let (mut force, mut torque, mut size) = (DVec3::ZERO, DVec3::ZERO, 0.0);
-            for (x, f) in x.iter().zip(&f) {
-                force += f.0;
-                torque += x.0.cross(f.0);
-                size += x.0.length() * f.0.length();
-            }
-            let bodies = sim.resources().get::<RigidBodies>();
-            let state = &bodies[0].state;
-            force += state.force;
-            torque += state.center.cross(state.force) + state.torque;
-            largest = largest.max(state.torque.length());
-            assert!(force.length() < 1e-11 * size, "{shape}: {force} of {size}");
-            assert!(torque.length() < 1e-11 * size, "{shape}: {torque} of {size}");
-            sim.clock().step < 40
-        })
-        .expect("a run");
-        assert!(largest > 1.0, "{shape}: {largest} N m");
-        assert!(sim.resources().get::<FlowCloud>().builds() > 0);
+    for viscosity in ["", ", viscosity: 30.0"] {
+        for shape in [BOX, PLATE, WEDGE, ACUTE, BLOCK] {
+            let mut sim = drop_around(shape, viscosity, if shape == BLOCK { 0.1 } else { 0.05 });
+            let (mut largest, mut repelled) = (0.0_f64, 0);
+            sim.run(|sim| {
+                let (x, f) = (column::<Position>(sim, 0), column::<Force>(sim, 0));
+                let (mut force, mut torque, mut size) = (DVec3::ZERO, DVec3::ZERO, 0.0);
+                for (x, f) in x.iter().zip(&f) {
+                    force += f.0;
+                    torque += x.0.cross(f.0);
+                    size += x.0.length() * f.0.length();
+                }
+                let bodies = sim.resources().get::<RigidBodies>();
+                let state = &bodies[0].state;
+                force += state.force;
+                torque += state.center.cross(state.force) + state.torque;
+                largest = largest.max(state.torque.length());
+                repelled += sim.resources().get::<FlowCloud>().repelled.len();
+                assert!(force.length() <= 1e-11 * size, "{shape}: {force} of {size}");
+                assert!(torque.length() <= 1e-11 * size, "{shape}: {torque} of {size}");
+                true
+            })
+            .expect("a run");
+            assert!(largest > 1.0, "{shape}{viscosity}: {largest} N m");
+            let comes_near = viscosity.is_empty() && ![BOX, PLATE].contains(&shape);
+            assert!(repelled > 0 || !comes_near, "{shape}: nothing is repelled");
+            assert!(sim.resources().get::<FlowCloud>().builds() > 0);
+        }
+    }
+}
+
+/// The force of the flow is frozen in the sub-steps, while the body turns: the torque that the fluid has lost
+/// and that the body has received differ, by an error of second order in the long step.
+#[test]
+fn in_sub_steps_the_error_of_the_angular_momentum_falls_with_the_square_of_the_step() {
+    let about = DVec3::new(0.7, -0.4, 0.0);
+    for viscosity in ["", ", viscosity: 30.0"] {
+        let error = |factor: f64| {
+            let time = format!("time: (end: 0.1, step: Adaptive(factor: {factor}))");
+            let mut sim = drop_in(BOX, viscosity, 0.05, &time);
+            sim.start().expect("a start");
+            let before = momenta(&sim, about)[1];
+            sim.run(|_| true).expect("a run");
+            assert!(sim.sub_steps().is_some_and(|(last, _)| last > 1));
+            (momenta(&sim, about)[1] - before).length() / before.length()
+        };
+        let errors = [1.0, 0.5, 0.25].map(error);
+        assert!(errors[0] < 1e-5, "{viscosity}: {errors:?}");
+        for pair in errors.windows(2) {
+            assert!((3.5..4.5).contains(&(pair[0] / pair[1])), "{viscosity}: {errors:?}");
+        }
     }
 }

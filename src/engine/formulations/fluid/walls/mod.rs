@@ -8,6 +8,8 @@ mod surface_distance;
 
 mod repulsion;
 
+mod whole_body;
+
 mod wall_compression;
 
 mod wall_pressure;

@@ -11,11 +11,17 @@
 //! Particles of a fluid at rest stand half a spacing before a wall. Those that start nearer than the range,
 //! where lattices do not fit shapes, lack s_i of it, which falls as soon as they have been farther away and
 //! never rises, so that it changes no energy.
+//!
+//! This energy does not change when fluid and body move together, so that the opposite force acts on the body
+//! at the place of the fluid particle. The particles of the body around that carry it by shares whose centre
+//! is there; before an acute edge of a rigid body, where none are around, all of the body does
+//! ([`whole_body`](super::whole_body)).
 
 use glam::DVec3;
 
 use super::surface_distance::BoundaryShape;
-use crate::formulations::fluid::cloud::{FlowCloud, Group, PARTS, Repelled, Role, Shares};
+use super::whole_body::WholeBody;
+use crate::formulations::fluid::cloud::{FlowCloud, Group, LoadCarrier, PARTS, Repelled, Role, Shares};
 use crate::parallel::{for_each_block, own_rows};
 use crate::plugin::SimBuilder;
 use crate::ranks::has_several;
@@ -170,15 +176,24 @@ impl FlowCloud {
             total[row].0 += force;
             parts[PARTS * row + 1] += force;
         };
+        let mut whole: Option<WholeBody> = None;
         for repelled in &self.repelled {
             if rows.contains(&repelled.i) {
                 add(repelled.i - rows.start, repelled.force);
             } else if rows.start == repelled.boundary {
+                if let LoadCarrier::Body(nearest) = repelled.shares.carrier {
+                    let body = whole.get_or_insert_with(|| WholeBody::new(self, group));
+                    body.push(self, [repelled.i, nearest as usize], -repelled.force);
+                    continue;
+                }
                 for &j in self.boundary_near(repelled.i, &rows) {
                     let share = repelled.shares.of(self, repelled.i, j as usize);
                     add(j as usize - rows.start, -share * repelled.force);
                 }
             }
+        }
+        if let Some(body) = whole {
+            body.for_each_force(self, group, add);
         }
     }
 }
@@ -186,7 +201,7 @@ impl FlowCloud {
 impl Shares {
     /// The share of particle `j` in what acts on `i`.
     pub fn of(&self, cloud: &FlowCloud, i: usize, j: usize) -> f64 {
-        if let Some(only) = self.only {
+        if let LoadCarrier::Particle(only) = self.carrier {
             return if only as usize == j { 1.0 } else { 0.0 };
         }
         let record = &cloud.records[j];

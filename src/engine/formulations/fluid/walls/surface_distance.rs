@@ -11,19 +11,21 @@
 use glam::{DMat3, DVec3};
 
 use super::body_motion::BodyMotion;
-use crate::formulations::fluid::cloud::{FlowCloud, Group, Shares, part};
+use crate::formulations::fluid::cloud::{FlowCloud, Group, LoadCarrier, Shares, part};
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::linalg::dyad;
 use crate::parallel::sum_over_blocks;
-use crate::plugin::SimBuilder;
+use crate::plugin::{BodyKind, SimBuilder};
 use crate::schedule::{Step, StepError};
 use crate::shapes::Region;
 use crate::world::ReferencePosition;
 
 /// Square of the distance of a point from the centre of the particles near it, in standard deviations of
 /// these, up to which a map is fitted to them: before a flat face it is some 2, before the corner of a
-/// square 9. Farther outside, as beside the few particles at the end of a fin that are on one side of it,
-/// shares and map would be extrapolations by many times their size.
+/// square 9. Farther outside, as before an acute edge or beside the few particles at the end of a fin that
+/// are on one side of it, shares and map would be extrapolations by many times their size: a rigid body
+/// carries forces there as a whole, and a deformable one has the distance and the force of its nearest
+/// particle.
 const OUTSIDE: f64 = 16.0;
 
 /// Radii of the spheres of a worn body in the plane and in space, over its spacing.
@@ -41,6 +43,8 @@ pub struct BoundaryShape {
     pub stiffness: Vec<f64>,
     /// Spacing of its particles, m.
     pub spacing: f64,
+    /// Kind of the body.
+    kind: BodyKind,
     /// Whether it has lost particles.
     pub is_worn: bool,
     /// The last motion, of a body that has one; none where it has not been looked for.
@@ -59,6 +63,13 @@ pub struct PlaceInBody {
     map: DMat3,
     /// Shares of the particles around it in what acts on it.
     pub shares: Shares,
+}
+
+impl PlaceInBody {
+    /// Whether the distance is that from one particle.
+    fn is_beside_particle(&self) -> bool {
+        matches!(self.shares.carrier, LoadCarrier::Particle(_))
+    }
 }
 
 /// A boundary where it is now.
@@ -111,6 +122,7 @@ impl BoundaryShape {
             region,
             stiffness,
             spacing: body.spacing,
+            kind: body.kind,
             is_worn: false,
             kept: None,
             reach,
@@ -213,8 +225,16 @@ impl BoundaryShape {
             (None, None) => return Some(self.beside(cloud, nearest, offset(nearest))),
         };
         let slope = -(fit.unwrap_or(DMat3::ZERO) * mean);
-        let shares = Shares { total, mean, slope, only: None };
+        let shares = Shares { total, mean, slope, carrier: self.carrier(fit.is_some(), nearest) };
         Some(PlaceInBody { at, distance: self.distance(cloud, at), map, shares })
+    }
+
+    /// What carries a force beside the body, where shares of the particles around fit it or not.
+    fn carrier(&self, fits: bool, nearest: u32) -> LoadCarrier {
+        match fits || self.kind != BodyKind::Rigid {
+            true => LoadCarrier::Near,
+            false => LoadCarrier::Body(nearest),
+        }
     }
 
     /// Distance up to which a fluid particle is before a face, m.
@@ -232,7 +252,7 @@ impl BoundaryShape {
     /// Beside the sphere of one particle, which is at `offset` from here.
     fn beside(&self, cloud: &FlowCloud, particle: u32, offset: DVec3) -> PlaceInBody {
         let distance = offset.length() - SPHERES[usize::from(!cloud.plane)] * self.spacing;
-        let shares = Shares { only: Some(particle), ..Shares::default() };
+        let shares = Shares { carrier: LoadCarrier::Particle(particle), ..Shares::default() };
         PlaceInBody { at: -offset.normalize_or_zero(), distance, map: DMat3::IDENTITY, shares }
     }
 
@@ -262,7 +282,7 @@ impl BoundaryShape {
 
     /// Distance of another place from the shape, by the motion at a place, m.
     pub fn distance_from(&self, cloud: &FlowCloud, place: &PlaceInBody, way: DVec3) -> f64 {
-        if place.shares.only.is_some() {
+        if place.is_beside_particle() {
             return f64::INFINITY;
         }
         self.distance(cloud, place.at + place.map * way)
@@ -271,7 +291,7 @@ impl BoundaryShape {
     /// Whether the foot of a particle is on a face of the shape: one there, zero on an edge, less than one
     /// near an edge.
     pub fn on_face(&self, cloud: &FlowCloud, place: &PlaceInBody) -> f64 {
-        if place.shares.only.is_some() {
+        if place.is_beside_particle() {
             return 1.0;
         }
         let depth = 0.5 * self.spacing;
@@ -295,7 +315,7 @@ impl BoundaryShape {
 
     /// Gradient of the distance with respect to the place in space, by central differences.
     pub fn direction(&self, cloud: &FlowCloud, place: &PlaceInBody) -> DVec3 {
-        if place.shares.only.is_some() {
+        if place.is_beside_particle() {
             return place.at;
         }
         place.map.transpose() * self.gradient(cloud, place.at)

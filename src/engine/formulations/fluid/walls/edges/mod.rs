@@ -13,6 +13,10 @@
 //! the adjoint: from the force f_w of pressure on w, face k takes `c_k n_k (n_k.q_w)` with q_w = (...)^-1
 //! f_w, and c_w q_w stays. Their sum is f_w, and the power of all is that of f_w with v*_w.
 //!
+//! Rigid bodies with suction whose motion is prescribed count as walls. A gap beside such a body has its
+//! pressure normal to the gap alone: along it, the force on the particles at the edge of the face is the one
+//! that is found here from the other side.
+//!
 //! This holds for particles that are behind the face of another wall, with a weight of one half where such a
 //! face ends in the middle of a particle's spacing. If the fluid ends at a right angle, the particles behind
 //! the plane of a face together carry, along its normal, the force of a fluid without a corner; beside a

@@ -1,7 +1,5 @@
 //! The motion of wall particles beside edges, and its contribution to the rates of compression.
 
-use std::ops::Range;
-
 use glam::{DMat3, DVec3};
 
 use super::fronts::WallShapes;
@@ -16,7 +14,7 @@ const OWN: f64 = 1e-3;
 /// Finds the particles beside edges and their motion.
 pub struct EdgeMotion {
     shapes: WallShapes,
-    /// For every particle of the walls, the sum over the faces around it.
+    /// For every boundary particle, the sum over the faces around it.
     sums: Vec<FaceSums>,
     /// Rows of those with faces.
     touched: Vec<usize>,
@@ -43,20 +41,22 @@ impl EdgeMotion {
     }
 
     /// Adds up the faces around all particles of the walls.
-    fn add_faces(&mut self, cloud: &FlowCloud, walls: &Range<usize>) {
-        self.sums.resize(walls.len(), FaceSums::NONE);
-        self.touched.clear();
+    fn add_faces(&mut self, cloud: &FlowCloud) {
+        let Self { shapes, sums: all, touched } = self;
+        all.resize(cloud.records.len() - cloud.fluid, FaceSums::NONE);
+        touched.clear();
         for front in &cloud.edges.fronts {
-            for &w in part(cloud.near_row(front.i), walls) {
-                let (share, depth) = front.share_and_depth(cloud, w as usize);
-                let sums = &mut self.sums[w as usize - walls.start];
+            let beside = |rows| part(cloud.near_row(front.i), rows).iter().map(|&w| w as usize);
+            for w in shapes.rows().iter().flat_map(beside) {
+                let (share, depth) = front.share_and_depth(cloud, w);
+                let sums = &mut all[w - cloud.fluid];
                 if share == 0.0 {
                     continue;
                 }
                 if sums.moments == DMat3::ZERO {
-                    self.touched.push(w as usize);
+                    touched.push(w);
                 }
-                if cloud.group_start(w as usize) != front.boundary {
+                if cloud.group_start(w) != front.boundary {
                     sums.others += share;
                     sums.behind += share * (depth / front.spacing + 0.5).clamp(0.0, 1.0);
                 }
@@ -64,21 +64,15 @@ impl EdgeMotion {
                 sums.motion += share * front.normal.dot(front.velocity) * front.normal;
             }
         }
-        self.touched.sort_unstable();
+        touched.sort_unstable();
     }
 
     /// Computes the motion of the particles from the sums; `half` is half of the step, s.
-    fn solve_motion(
-        &mut self,
-        cloud: &FlowCloud,
-        walls: &Range<usize>,
-        half: f64,
-        out: &mut Vec<EdgeParticle>,
-    ) {
+    fn solve_motion(&mut self, cloud: &FlowCloud, half: f64, out: &mut Vec<EdgeParticle>) {
         out.clear();
         for &row in &self.touched {
             let FaceSums { moments, motion, others, behind } =
-                std::mem::replace(&mut self.sums[row - walls.start], FaceSums::NONE);
+                std::mem::replace(&mut self.sums[row - cloud.fluid], FaceSums::NONE);
             if behind == 0.0 {
                 continue;
             }
@@ -97,18 +91,19 @@ impl EdgeMotion {
 impl Run for EdgeMotion {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let mut cloud = step.resources.get_mut::<FlowCloud>();
-        let (walls, half) = (self.shapes.rows(), 0.5 * step.clock.dt);
+        let half = 0.5 * step.clock.dt;
         let mut edges = std::mem::take(&mut cloud.edges);
-        self.shapes.find(&cloud, step, &mut edges.fronts)?;
+        edges.are_of_bodies = self.shapes.find(&cloud, step, &mut edges.fronts)?;
         cloud.edges.fronts = std::mem::take(&mut edges.fronts);
-        self.add_faces(&cloud, &walls);
-        self.solve_motion(&cloud, &walls, half, &mut edges.particles);
+        self.add_faces(&cloud);
+        self.solve_motion(&cloud, half, &mut edges.particles);
         let mut rates = std::mem::take(&mut cloud.compression);
         for edge in &edges.particles {
             cloud.for_each_beside(edge.row, half, |j, _, force| rates[j] -= force.dot(edge.excess));
         }
         cloud.compression = rates;
         cloud.edges.particles = edges.particles;
+        cloud.edges.are_of_bodies = edges.are_of_bodies;
         Ok(())
     }
 }

@@ -27,20 +27,38 @@ pub fn add_edges(
     out: &mut Vec<usize>,
 ) {
     let points = sphere(cloud.plane);
-    let limit = OUTSIDE[usize::from(!cloud.plane)] * points.len() as f64;
-    let is_edge = |at: DVec3| {
-        let depth = -shape.distance(cloud, at);
-        if !(0.0..DEPTH * shape.spacing).contains(&depth) {
-            return false;
-        }
-        // As from the first row of a lattice, wherever the particle is.
-        let out = shape.gradient(cloud, at).normalize_or_zero();
-        let from = at + (depth - 0.5 * shape.spacing) * out;
-        let is_outside = |unit: &&DVec3| shape.distance(cloud, from + RADIUS * shape.spacing * **unit) > 0.0;
-        points.iter().filter(is_outside).count() as f64 > limit
+    let limit = OUTSIDE[usize::from(!cloud.plane)];
+    let seen = SeenShape {
+        distance: |at| shape.distance(cloud, at),
+        gradient: |at| shape.gradient(cloud, at),
+        spacing: shape.spacing,
     };
+    let is_edge = |at: DVec3| seen.open_part(at, &points).is_some_and(|part| part > limit);
     let at_edges = reference.iter().enumerate().filter(|(_, place)| is_edge(place.0));
     out.extend(at_edges.map(|(k, _)| shape.group.cloud.start + k));
+}
+
+/// A shape by its distance, m, with the spacing of its particles, m.
+struct SeenShape<D, G> {
+    distance: D,
+    gradient: G,
+    spacing: f64,
+}
+
+impl<D: Fn(DVec3) -> f64, G: Fn(DVec3) -> DVec3> SeenShape<D, G> {
+    /// Part of the sphere around a particle that is outside of the shape; none of a particle that is not near
+    /// its surface.
+    fn open_part(&self, at: DVec3, points: &[DVec3]) -> Option<f64> {
+        let depth = -(self.distance)(at);
+        if !(0.0..DEPTH * self.spacing).contains(&depth) {
+            return None;
+        }
+        // As from the first row of a lattice, wherever the particle is.
+        let out = (self.gradient)(at).normalize_or_zero();
+        let from = at + (depth - 0.5 * self.spacing) * out;
+        let is_outside = |unit: &&DVec3| (self.distance)(from + RADIUS * self.spacing * **unit) > 0.0;
+        Some(points.iter().filter(is_outside).count() as f64 / points.len() as f64)
+    }
 }
 
 /// Unit vectors in all directions, evenly: on a circle, or on a spiral around a sphere.
@@ -55,4 +73,94 @@ fn sphere(plane: bool) -> Vec<DVec3> {
         DVec3::new(radius * angle.cos(), radius * angle.sin(), z)
     };
     (0..count).map(place).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formulations::fluid::tests::{column, simulation};
+
+    /// Lattices of walls, and the name of each.
+    const LATTICES: [&str; 4] =
+        ["Regular", "Hexagonal", "BodyFitted(iterations: 10)", "Relaxed(seed: 1, iterations: 30)"];
+
+    /// An edge at the origin of that angle, along z: its faces are behind it, one below y = 0.
+    fn edge(angle: f64, spacing: f64) -> SeenShape<impl Fn(DVec3) -> f64, impl Fn(DVec3) -> DVec3> {
+        let normals = [DVec3::Y, DVec3::new(angle.sin(), -angle.cos(), 0.0)];
+        let distance =
+            move |at: DVec3| normals.map(|normal| normal.dot(at)).into_iter().fold(f64::MIN, f64::max);
+        let gradient = move |at: DVec3| {
+            if normals[0].dot(at) > normals[1].dot(at) { normals[0] } else { normals[1] }
+        };
+        SeenShape { distance, gradient, spacing }
+    }
+
+    /// The particles of a wall of that angle.
+    fn particles(lattice: &str, angle: f64, spacing: f64, plane: bool) -> Vec<DVec3> {
+        let corner = |turn: f64| format!("({}, {})", -turn.cos(), -turn.sin());
+        let polygon = format!("[(0, 0), {}, {}, {}]", corner(0.0), corner(0.5 * angle), corner(angle));
+        let shape = if plane {
+            format!("Polygon(points: {polygon})")
+        } else {
+            format!("Extrusion(polygon: {polygon}, from: -0.5, to: 0.5)")
+        };
+        let (name, drop) = if plane {
+            ("Two", "Box(min: (4, 4), max: (4.5, 4.5))")
+        } else {
+            ("Three", "Box(min: (4, 4, 4), max: (4.5, 4.5, 4.5))")
+        };
+        let sim = simulation(&format!(
+            r#"(dimension: {name}, materials: {{"water": Fluid(density: 1000.0, sound_speed: 20.0)}},
+                bodies: [
+                    (name: "water", material: "water", spacing: {spacing}, formulation: Fluid, shape: {drop}),
+                    (name: "wall", material: "wall", spacing: {spacing}, formulation: Wall(slip: Free), lattice: {lattice}, shape: {shape}),
+                ], time: (end: 1.0))"#
+        ));
+        column::<ReferencePosition>(&sim, 1).into_iter().map(|place| place.0).collect()
+    }
+
+    /// Whether any particle near the edge counts as one of it.
+    fn is_seen(lattice: &str, degrees: f64, spacing: f64, plane: bool) -> bool {
+        let (angle, points) = (degrees.to_radians(), sphere(plane));
+        let shape = edge(angle, spacing);
+        // In space away from the ends of the edge.
+        let is_near = |at: &DVec3| at.z.abs() < 0.25 && at.truncate().length() < 5.0 * spacing;
+        let near = particles(lattice, angle, spacing, plane).into_iter().filter(is_near);
+        let parts = near.filter_map(|at| shape.open_part(at, &points));
+        parts.fold(0.0, f64::max) > OUTSIDE[usize::from(!plane)]
+    }
+
+    /// However the rows of a lattice lie to an edge: its place among them changes with the spacing.
+    #[test]
+    fn edges_of_up_to_120_degrees_count_in_all_lattices_and_from_155_on_in_none() {
+        for lattice in LATTICES {
+            for spacing in [0.05, 0.0443, 0.0385] {
+                for degrees in [60.0, 90.0, 105.0, 120.0] {
+                    assert!(is_seen(lattice, degrees, spacing, true), "{lattice} {spacing}: {degrees}");
+                }
+                for degrees in [155.0, 170.0] {
+                    assert!(!is_seen(lattice, degrees, spacing, true), "{lattice} {spacing}: {degrees}");
+                }
+            }
+        }
+        for lattice in &LATTICES[..2] {
+            let seen = [75.0, 90.0, 120.0, 155.0].map(|degrees| is_seen(lattice, degrees, 0.1, false));
+            assert_eq!(seen, [true, true, true, false], "{lattice} in space");
+        }
+    }
+
+    /// Round walls have no edges.
+    #[test]
+    fn round_walls_count_as_edges_only_where_they_are_as_thin_as_the_support() {
+        for (plane, thin, thick) in [(true, 1.5, 2.5), (false, 3.0, 5.0)] {
+            let points = sphere(plane);
+            let is_seen = |radius: f64| {
+                let distance = |at: DVec3| at.length() - radius;
+                let ball = SeenShape { distance, gradient: |at| at, spacing: 1.0 };
+                let part = ball.open_part((radius - 0.5) * DVec3::X, &points);
+                part.is_some_and(|part| part > OUTSIDE[usize::from(!plane)])
+            };
+            assert!(is_seen(thin) && !is_seen(thick), "{plane}");
+        }
+    }
 }

@@ -6,6 +6,7 @@ use super::fill::{BoundaryMotion, Fill, Gap, GapRemainder};
 use super::moments::{GapPair, Surrounding, of_surface};
 use super::share::give;
 use crate::formulations::fluid::cloud::{FlowCloud, Group, PARTS};
+use crate::formulations::fluid::lists::SideMotion;
 use crate::parallel::{for_each_block, for_each_heavy_block, sum_over_blocks};
 use crate::schedule::{Run, Step, StepError};
 use crate::world::{Force, Velocity};
@@ -87,6 +88,11 @@ impl GapPressure {
             let mut force = -across.iter().map(of_pair).sum::<DVec3>();
             if pressure != 0.0 {
                 force += gap.closed * gap.around.force(pressure, slope);
+            }
+            // What acts on the faces of these beside the gap is found at their edges.
+            if cloud.edges.are_of_bodies && cloud.pairs.gaps.side_of(row).moves == SideMotion::Prescribed {
+                let toward = gap.around.toward();
+                force = force.dot(toward) * toward;
             }
             give(cloud, row, cloud.records[row].volume() * force, across, forces);
         }
