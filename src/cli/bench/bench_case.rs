@@ -324,7 +324,7 @@ pub const BENCH_CASES: &[BenchCase] = &[
         set: &[("parameters.dx", Spacing)],
     },
     BenchCase {
-        name: "contact-all-2d-rubbed",
+        name: "contact-rubbed",
         title: "contact-all-2d with friction, every other sheet sliding",
         scene: SHEETS_PLANE,
         spacing: sheets_plane,
