@@ -338,7 +338,8 @@ fn a_benchmark_measures_a_case_and_names_the_cases_there_are() {
         let most = if case.starts_with("abrasive") { 8000.0 } else { 2000.0 };
         assert!((500.0..most).contains(&number("particles")), "{record}");
         assert!(number("particle_steps_per_second") > 0.0, "{record}");
-        assert!(case == "abrasive-grains" || number("neighbors") > 10.0, "{record}");
+        // In a sheet of two layers they are nine.
+        assert!(case == "abrasive-grains" || number("neighbors") > 8.0, "{record}");
         assert_eq!(case == "abrasive" || case == "dam-plate", record["sub_steps"].is_number(), "{record}");
     }
     let unknown = meshless(&folder, &["bench", "solid"]);

@@ -73,6 +73,12 @@ const DAM_PLANE: (&str, &str) =
 const DAM_PLATE: (&str, &str) =
     ("benches/scenes/dam_plate.ron", include_str!("../../../benches/scenes/dam_plate.ron"));
 
+const SLABS: (&str, &str) = ("benches/scenes/slabs.ron", include_str!("../../../benches/scenes/slabs.ron"));
+const SHEETS: (&str, &str) =
+    ("benches/scenes/sheets.ron", include_str!("../../../benches/scenes/sheets.ron"));
+const SHEETS_PLANE: (&str, &str) =
+    ("benches/scenes/sheets_plane.ron", include_str!("../../../benches/scenes/sheets_plane.ron"));
+
 const ABRASIVE: (&str, &str) =
     ("assets/scenes/abrasive_flow.ron", include_str!("../../../assets/scenes/abrasive_flow.ron"));
 
@@ -90,6 +96,20 @@ fn cube(particles: f64) -> f64 {
 
 fn square(particles: f64) -> f64 {
     1.0 / particles.sqrt().round()
+}
+
+/// Spacing of 200 layers that are 1 m long.
+fn slabs(particles: f64) -> f64 {
+    1.0 / (particles / 200.0).round().max(1.0)
+}
+
+/// Spacing of eight layers that are 1 m long, and of ten that are 1 m long and wide.
+fn sheets_plane(particles: f64) -> f64 {
+    1.0 / (particles / 8.0).round().max(1.0)
+}
+
+fn sheets(particles: f64) -> f64 {
+    1.0 / (particles / 10.0).sqrt().round().max(1.0)
 }
 
 /// Spacing in the channel of abrasive flow, m: an integer fraction of that of the scene, so that the gaps
@@ -308,6 +328,42 @@ pub const BENCH_CASES: &[BenchCase] = &[
         title: "the grains of abrasive alone over a rigid floor, with their contacts",
         scene: CHANNEL_GRAINS,
         spacing: channel,
+        set: &[("parameters.dx", Spacing)],
+        cycle: 1,
+    },
+    BenchCase {
+        name: "contact-1",
+        title: "two slabs in a plane pressed together face to face: one in a hundred particles touches",
+        scene: SLABS,
+        spacing: slabs,
+        set: &[("parameters.dx", Spacing)],
+        cycle: 1,
+    },
+    BenchCase {
+        name: "contact-all-2d",
+        title: "a stack of sheets in a plane, each of two layers: every particle touches",
+        scene: SHEETS_PLANE,
+        spacing: sheets_plane,
+        set: &[("parameters.dx", Spacing)],
+        cycle: 1,
+    },
+    BenchCase {
+        name: "contact-rubbed",
+        title: "contact-all-2d with friction, every other sheet sliding",
+        scene: SHEETS_PLANE,
+        spacing: sheets_plane,
+        set: &[
+            ("parameters.dx", Spacing),
+            ("parameters.friction", Text("0.3")),
+            ("parameters.slide", Text("1.0")),
+        ],
+        cycle: 1,
+    },
+    BenchCase {
+        name: "contact-all",
+        title: "a stack of sheets in three dimensions, each of two layers: every particle touches",
+        scene: SHEETS,
+        spacing: sheets,
         set: &[("parameters.dx", Spacing)],
         cycle: 1,
     },

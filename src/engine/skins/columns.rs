@@ -144,6 +144,31 @@ impl SkinView<'_> {
         (DVec3::new(x[0] + x[1], y[0] + y[1], z[0] + z[1]), is_there)
     }
 
+    /// The same in a plane, where all components along z are zero.
+    #[inline(always)]
+    fn look_in_plane<A: FourLanes>(&self, a: A, vertex: u32) -> (DVec3, bool) {
+        let (mut x, mut y) = ([0.0; 2], [0.0; 2]);
+        let mut is_there = true;
+        for carrier in self.skin.carriers(vertex) {
+            let row = self.first_row + carrier.particle as usize;
+            is_there &= self.removed[row] == Removed::NO;
+            let (weight, arm) = (carrier.weight, carrier.arm);
+            if carrier.map != 0 {
+                let place = self.carried(carrier, row);
+                x[0] = a.scalar_mul_add(weight, place.x, x[0]);
+                y[0] = a.scalar_mul_add(weight, place.y, y[0]);
+                continue;
+            }
+            let (place, f) = (&self.position[row].0, &self.gradient[row].0);
+            let (p, q) = (weight * arm.x, weight * arm.y);
+            x[0] = a.scalar_mul_add(p, f.x_axis.x, a.scalar_mul_add(weight, place.x, x[0]));
+            y[0] = a.scalar_mul_add(p, f.x_axis.y, a.scalar_mul_add(weight, place.y, y[0]));
+            x[1] = a.scalar_mul_add(q, f.y_axis.x, x[1]);
+            y[1] = a.scalar_mul_add(q, f.y_axis.y, y[1]);
+        }
+        (DVec3::new(x[0] + x[1], y[0] + y[1], 0.0), is_there)
+    }
+
     /// The same where the shares follow the deformation: those without a share need not be there.
     fn look_at_following(&self, vertex: u32) -> (DVec3, bool) {
         let VertexPosition(place, missing) =
@@ -205,8 +230,11 @@ impl<E: FnMut(usize, DVec3, bool)> HotLoop for VertexPlaces<'_, E> {
 
     #[inline(always)]
     fn run<A: FourLanes>(self, a: A) {
+        let skin = self.view.skin;
+        let is_plane = skin.facets.axes == 2 && skin.reach.is_none();
         for (k, &vertex) in self.vertices.iter().enumerate() {
-            let (place, is_there) = self.view.look(a, vertex);
+            let (place, is_there) =
+                if is_plane { self.view.look_in_plane(a, vertex) } else { self.view.look(a, vertex) };
             (self.each)(k, place, is_there);
         }
     }

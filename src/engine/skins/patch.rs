@@ -60,10 +60,15 @@ impl HotLoop for OnParticles<'_> {
     #[inline(always)]
     fn run<A: FourLanes>(self, a: A) {
         let Self { all, first, on: (on, alone) } = self;
+        let is_plane = all.skin.facets.axes == 2;
         for k in 0..on.len() {
             let ends = all.starts[first + k] as usize..all.starts[first + k + 1] as usize;
             let (force, couple) = if all.following.is_empty() {
-                all.on_particle(a, &all.ends[ends])
+                if is_plane {
+                    all.on_particle_in_plane(a, &all.ends[ends])
+                } else {
+                    all.on_particle(a, &all.ends[ends])
+                }
             } else {
                 all.on_follower(&all.ends[ends.clone()], &all.following[ends])
             };
@@ -114,6 +119,33 @@ impl CarrierForces<'_> {
             couple += self.of_vertices(ends);
         }
         (DVec3::new(fx, fy, fz), couple)
+    }
+
+    /// The same in a plane, where all components along z are zero.
+    #[inline(always)]
+    fn on_particle_in_plane<A: FourLanes>(&self, a: A, ends: &[End]) -> (DVec3, DMat3) {
+        let (mut fx, mut fy) = (0.0, 0.0);
+        let (mut xx, mut yx, mut xy, mut yy) = (0.0, 0.0, 0.0, 0.0);
+        for end in ends {
+            let mut f = self.forces[end.vertex as usize];
+            if f.x == 0.0 && f.y == 0.0 {
+                continue;
+            }
+            if end.map != 0 {
+                f = self.skin.maps[end.map as usize].vector(f);
+            }
+            let (x, y) = (end.weight * f.x, end.weight * f.y);
+            (fx, fy) = (fx + x, fy + y);
+            let arm = &end.arm;
+            (xx, yx) = (a.scalar_mul_add(x, arm.x, xx), a.scalar_mul_add(y, arm.x, yx));
+            (xy, yy) = (a.scalar_mul_add(x, arm.y, xy), a.scalar_mul_add(y, arm.y, yy));
+        }
+        let (x_axis, y_axis) = (DVec3::new(xx, yx, 0.0), DVec3::new(xy, yy, 0.0));
+        let mut couple = DMat3 { x_axis, y_axis, z_axis: DVec3::ZERO };
+        if self.couples.is_some() {
+            couple += self.of_vertices(ends);
+        }
+        (DVec3::new(fx, fy, 0.0), couple)
     }
 
     /// The same where the shares follow the deformation.
@@ -201,7 +233,11 @@ impl Patch {
     }
 
     /// Makes these facets, ascending, the patch.
-    pub fn select(&mut self, facets: impl IntoIterator<Item = u32>) {
+    pub fn select(&mut self, facets: impl IntoIterator<Item = u32, IntoIter: Clone>) {
+        let facets = facets.into_iter();
+        if !self.facets.is_empty() && facets.clone().eq(self.facets.iter().copied()) {
+            return;
+        }
         let skin = Arc::clone(&self.skin);
         self.facets.clear();
         self.facets.extend(facets);

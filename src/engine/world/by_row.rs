@@ -19,12 +19,13 @@ pub fn sum_by_row<R: BlockSum>(
     }
     let entries = RowEntries { rows: 0..rows, numbers: 0..count, row };
     sum_over_blocks(entries, &|_, RowEntries { numbers, .. }: RowEntries<'_, _>| {
-        let mut sum = R::default();
-        let mut numbers = numbers.peekable();
-        while let Some(number) = numbers.next() {
-            let mut of_row = entry(number);
-            while let Some(next) = numbers.next_if(|next| row(*next) == row(number)) {
-                of_row.add(&entry(next));
+        let (mut sum, mut number) = (R::default(), numbers.start);
+        while number < numbers.end {
+            let (own, mut of_row) = (row(number), entry(number));
+            number += 1;
+            while number < numbers.end && row(number) == own {
+                of_row.add(&entry(number));
+                number += 1;
             }
             sum.add(&of_row);
         }

@@ -52,14 +52,13 @@ fn touching_surfaces(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         Check::below("blocks, friction 0: tangential over normal force, rms", rms, 0.01, "no friction")
             .converging(),
         balance.check_of("blocks, friction 0", Kind::Smooth),
-        Check::new("blocks, friction 0.3", -mean, 0.3, Tolerance::Relative(0.02), "1", "law of Coulomb")
-            .converging(),
+        Check::new("blocks, friction 0.3", -mean, 0.3, Tolerance::Relative(0.02), "1", "law of Coulomb"),
         rubbed.check_of("blocks, friction 0.3", Kind::Smooth),
     ])
 }
 
-/// Time from which the blocks slide at a constant speed, s.
-const SLIDING: f64 = 1.2;
+/// Time from which the blocks slide at a constant speed everywhere, s.
+const SLIDING: f64 = 1.4;
 
 /// The force on the held side of the upper block, N.
 fn held(simulation: &Simulation, spacing: f64) -> Result<DVec3> {

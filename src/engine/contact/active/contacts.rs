@@ -160,22 +160,37 @@ impl<T: Copy + Default + Send + Sync, P: Copy + Default + Send + Sync, E: BlockS
             }
         });
         let mut sum = sum_by_row(nodes, met.len(), &|k| met[k].0.0 as usize, &|k| energies[k]);
-        energies.clear();
-        energies.resize(old.len(), ContactEnergy::default());
-        let rows = (old, &mut energies[..]);
-        type Ended<'a> = (&'a [(PairKey, History)], &'a mut [ContactEnergy]);
-        for_each_heavy_block(rows, &mut Vec::new(), &|_, (old, energies): Ended<'_>| {
-            let mut met = PassedList::new(met, old[0].0);
-            for ((key, history), energy) in old.iter().zip(energies) {
-                if met.at(*key).is_none() {
-                    end(*key, history, energy);
-                }
-            }
-        });
-        sum.add(&sum_by_row(nodes, old.len(), &|k| old[k].0.0 as usize, &|k| energies[k]));
+        let has_ended = old.len() != met.len() || old.iter().zip(&*met).any(|(old, met)| old.0 != met.0);
+        if has_ended {
+            sum.add(&ended(nodes, old, met, energies, &end));
+        }
         self.histories.turn();
         sum
     }
+}
+
+/// The energies and losses of contacts that have ended: those of `old` that are not among those met, added by
+/// the nodes of the first body.
+fn ended<T: Sync>(
+    nodes: usize,
+    old: &[(PairKey, History)],
+    met: &[(PairKey, T)],
+    energies: &mut Vec<ContactEnergy>,
+    end: &(impl Fn(PairKey, &History, &mut ContactEnergy) + Sync),
+) -> ContactEnergy {
+    energies.clear();
+    energies.resize(old.len(), ContactEnergy::default());
+    let rows = (old, &mut energies[..]);
+    type Ended<'a> = (&'a [(PairKey, History)], &'a mut [ContactEnergy]);
+    for_each_heavy_block(rows, &mut Vec::new(), &|_, (old, energies): Ended<'_>| {
+        let mut met = PassedList::new(met, old[0].0);
+        for ((key, history), energy) in old.iter().zip(energies) {
+            if met.at(*key).is_none() {
+                end(*key, history, energy);
+            }
+        }
+    });
+    sum_by_row(nodes, old.len(), &|k| old[k].0.0 as usize, &|k| energies[k])
 }
 
 /// A list, ascending by pair, that is passed through in its order.

@@ -72,8 +72,8 @@ pub(super) struct CloseFacets {
     pub last: Option<u32>,
 }
 
-/// Room for facets that are close to one.
-const ROOM: usize = 16;
+/// Room for facets that are close to one: in three dimensions some twenty are on flat sides.
+const ROOM: usize = 40;
 
 impl Default for CloseFacets {
     fn default() -> Self {
