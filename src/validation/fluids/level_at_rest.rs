@@ -19,9 +19,8 @@ pub(crate) const CASE: Case = Case {
 
 /// Area of the water over the length of the tank, m.
 const LEVEL: f64 = 0.2;
-/// Resolution from which a three-dimensional run has its full duration, and the end of shorter runs, s.
+/// Resolution from which on the run in three dimensions without shifting is part of the case.
 const FINE: usize = 20;
-const SHORT: f64 = 6.0;
 const SHIFTED: &str =
     "[density_diffusion(), artificial_viscosity(alpha: 0.05, beta: 0.0), particle_shifting()]";
 
@@ -57,9 +56,6 @@ fn settle(registry: &Registry, across: usize, solid: bool, shifted: bool) -> Res
         .set("bodies.tank.shape[1].max", place(0.8, 2.0, 0.2))?;
     if shifted {
         template = template.set("bodies.water.plugins", SHIFTED)?;
-    }
-    if solid && across < FINE {
-        template = template.set("time.end", SHORT)?;
     }
     let mut simulation = template.build(registry)?;
     let water = body(&simulation, "water")?;
