@@ -79,8 +79,8 @@ impl RelativeDisplacements {
         self.length
     }
 
-    /// Bound of the relative displacement of the particles since the last [`Parting::note`]; infinite where
-    /// the number of particles has changed.
+    /// Bound of the relative displacement of the particles since the last
+    /// [`note`](RelativeDisplacements::note); infinite where the number of particles has changed.
     pub fn parted(&mut self, positions: &[DVec3]) -> RelativeBounds {
         if self.then.len() != positions.len() {
             return RelativeBounds { near: f64::INFINITY, all: f64::INFINITY };
