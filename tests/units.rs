@@ -2,8 +2,8 @@
 //! but rounding.
 //!
 //! With lengths and times scaled by one power of two, and densities, moduli and velocities as they are, every
-//! quantity of a scene is scaled by a power of two, which is exact in floating-point numbers. A threshold with
-//! a hidden unit, or a sum of quantities of different dimension, would change the bits.
+//! quantity of a scene is scaled by a power of two, which is exact in floating-point numbers. A threshold
+//! with a hidden unit, or a sum of quantities of different dimension, would change the bits.
 
 mod common;
 
@@ -135,6 +135,5 @@ fn a_flow_is_the_same_in_a_moving_frame() {
     };
     let (rest, moving) = (positions([0.0, 0.0]), positions([8.0, -3.0]));
     let furthest = rest.iter().map(|(id, x)| x.distance(moving[id])).fold(0.0, f64::max);
-    println!("{furthest}");
     assert!(furthest < 0.02 * 0.025, "{furthest}");
 }
