@@ -87,7 +87,7 @@ fn every_field_is_documented() {
         "{page}"
     );
     assert!(page.contains("| `step` | Step | `Adaptive(factor: 1.0)` |"), "{page}");
-    assert!(page.contains("- `Fixed(number)`: The same step throughout [s]."), "{page}");
+    assert!(page.contains("- `Fixed(number)`: A constant time step [s]."), "{page}");
     assert!(page.contains("- `Field(text)`: A field"), "{page}");
     for line in page.lines() {
         assert!(!(line.starts_with("| `") && line.ends_with("|  |")), "without meaning: {line}");
