@@ -93,9 +93,10 @@ impl RowPass<4, 3> for Responses<'_> {
     }
 }
 
-/// Changes the velocities of a body; returns the kinetic energy that they lose, J. The mean over the body of
-/// what particles gain by other places is not zero, so each gives up a part of its momentum in proportion to
-/// the magnitude of its own change: momentum stays, and what is lost is the same in every frame.
+/// Changes the velocities of a body; returns the kinetic energy that they lose, J. The changes at the new
+/// places do not add up to zero momentum. Each particle therefore gives up a part in proportion to the
+/// magnitude of its own change: the momentum of the body is conserved, and the energy is the same in every
+/// frame.
 pub fn change_velocity(step: &Step<'_>, id: BodyId, responses: &[ShiftResponse]) -> Result<f64, StepError> {
     let (view, rows) = step.world.body_view(id);
     let mut velocity = view.write::<Velocity>()?;

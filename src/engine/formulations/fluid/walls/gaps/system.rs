@@ -89,7 +89,7 @@ impl GapPressure {
             if pressure != 0.0 {
                 force += gap.closed * gap.around.force(pressure, slope);
             }
-            // What acts on the faces of these beside the gap is found at their edges.
+            // Along the gap, `EdgeForces` gives the force on the faces of such bodies.
             if cloud.edges.are_of_bodies && cloud.pairs.gaps.side_of(row).moves == SideMotion::Prescribed {
                 let toward = gap.around.toward();
                 force = force.dot(toward) * toward;
