@@ -90,7 +90,7 @@ fn dam_break(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     for (k, (record, reference)) in pressure.iter().zip(column("plateau")?.0).enumerate() {
         checks.push(Check::new(
             format!("pressure at P{} from 3 to 5, over rho g H", k + 1),
-            mean(record, 3.0, 5.0),
+            record.mean(&(3.0..=5.0))?,
             reference.1,
             Tolerance::Relative(of_pressure),
             "1",
@@ -99,15 +99,4 @@ fn dam_break(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     }
     checks.push(balance.check(Kind::Smooth));
     Ok(checks)
-}
-
-/// Mean over time, by the trapezoidal rule.
-fn mean(record: &Record, from: f64, to: f64) -> f64 {
-    let (mut sum, mut time) = (0.0, 0.0);
-    for pair in record.0.windows(2).filter(|pair| pair[0].0 >= from && pair[1].0 <= to) {
-        let dt = pair[1].0 - pair[0].0;
-        sum += 0.5 * dt * (pair[0].1 + pair[1].1);
-        time += dt;
-    }
-    sum / time
 }

@@ -1,4 +1,6 @@
-//! Records over time: values from references, maxima, crossings.
+//! Records over time: values from references, means, maxima, crossings.
+
+use std::ops::RangeInclusive;
 
 use anyhow::{Context, Result, ensure};
 
@@ -10,6 +12,14 @@ impl Record {
     /// Adds a value, s and its unit.
     pub fn push(&mut self, time: f64, value: f64) {
         self.0.push((time, value));
+    }
+
+    /// Mean over a time, s, by the trapezoidal rule over the samples in it.
+    pub fn mean(&self, time: &RangeInclusive<f64>) -> Result<f64> {
+        let inside: Vec<(f64, f64)> = self.0.iter().copied().filter(|s| time.contains(&s.0)).collect();
+        ensure!(inside.len() > 1, "the record has no samples from {} to {} s", time.start(), time.end());
+        let areas = inside.windows(2).map(|w| 0.5 * (w[0].1 + w[1].1) * (w[1].0 - w[0].0));
+        Ok(areas.sum::<f64>() / (inside[inside.len() - 1].0 - inside[0].0))
     }
 
     /// Time and value of the maximum, from the parabola through three samples.

@@ -78,7 +78,7 @@ pub fn add(
     sim.add_column_to::<ListPosition>(&bodies);
     // Sorting permutes all columns.
     let columns: Vec<&'static str> = sim.columns(fluid).iter().map(|column| column.name).collect();
-    watch::add(phases.clone(), sim.body(groups[0].body).spacing, account.clone(), sim);
+    watch::add(phases.clone(), groups, account.clone(), sim);
     let lists = System::new(Stage::Neighbors, NEIGHBORS, Neighbors::default())
         .on_phases(phases.iter().copied())
         .touches_packed(FLOW_RECORDS, Mode::Writes)

@@ -457,3 +457,20 @@ fn rows_at_the_interface_of_two_liquids_are_warned_of_and_other_pairs_are_not() 
     assert!(!is_told(&scene("", 1000.0, -9.81)));
     assert!(!is_told(&scene("", 800.0, 0.0)));
 }
+
+#[test]
+fn a_turning_fluid_without_friction_is_warned_of_and_one_with_friction_is_not() {
+    let run = |viscosity: f64| {
+        let mut sim = simulation(&format!(
+            r#"(dimension: Two, materials: {{"fluid": Fluid(density: 1.0, sound_speed: 10.0, viscosity: {viscosity})}},
+                bodies: [(name: "patch", material: "fluid", shape: Sphere(center: (0, 0), radius: 0.5), spacing: 0.05, formulation: Fluid(pressure: "(x^2 + y^2)/2 - 0.125"))],
+                conditions: [InitialVelocity(on: Select(body: "patch"), value: ("y", "-x"))], record: (every: 0.02), time: (end: 0.1))"#
+        ));
+        sim.run(|_| true).expect("a run");
+        sim
+    };
+    let sim = run(0.0);
+    assert!(warning(&sim, "`patch` has been in tension since").is_some(), "{:?}", sim.warnings());
+    let sim = run(1e-3);
+    assert!(warning(&sim, "in tension").is_none(), "{:?}", sim.warnings());
+}

@@ -26,6 +26,8 @@ mod fit;
 
 mod friction;
 
+mod tension;
+
 mod unevenness;
 
 pub mod watch;

@@ -14,8 +14,9 @@ use super::lost_volume::LostVolume;
 use super::no_gap_pressure;
 use super::passing::PassingWalls;
 use super::stabilized;
+use super::tension::TensionWatch;
 use super::unevenness::Unevenness;
-use crate::formulations::fluid::cloud::{FLOW_RECORDS, FlowCloud};
+use crate::formulations::fluid::cloud::{FLOW_RECORDS, FlowCloud, Group};
 use crate::plugin::SimBuilder;
 use crate::rigid::RIGID_BODIES;
 use crate::schedule::Trigger;
@@ -46,6 +47,7 @@ struct FlowWatch {
     compression: CompressionWatch,
     filling: FillingWatch,
     unevenness: Unevenness,
+    tension: TensionWatch,
     /// Compression, filling and unevenness are looked at with the frames.
     frames: Trigger,
     end: f64,
@@ -57,7 +59,8 @@ struct FlowWatch {
 }
 
 /// Adds the system of the checks.
-pub fn add(phases: Vec<PhaseId>, spacing: f64, diffusion: Option<String>, sim: &mut SimBuilder<'_>) {
+pub fn add(phases: Vec<PhaseId>, groups: &[Group], diffusion: Option<String>, sim: &mut SimBuilder<'_>) {
+    let spacing = sim.body(groups[0].body).spacing;
     let watch = FlowWatch {
         intrusion: Intrusion::new(sim, spacing),
         passing: PassingWalls::new(sim),
@@ -73,6 +76,7 @@ pub fn add(phases: Vec<PhaseId>, spacing: f64, diffusion: Option<String>, sim: &
         compression: CompressionWatch::default(),
         filling: FillingWatch::default(),
         unevenness: Unevenness::default(),
+        tension: TensionWatch::new(groups, sim),
         frames: Trigger::after_interval(sim.scene().record_interval()),
         end: sim.scene().time.end,
         is_started: false,
@@ -118,6 +122,7 @@ impl Run for FlowWatch {
             self.filling.look(&cloud, &mut self.scratch, step);
             self.closed.look(at_end, &cloud, &mut self.scratch, step);
             self.unevenness.look(&cloud, &mut self.friction, step);
+            self.tension.look(&cloud, step);
         }
         if at_end {
             stabilized::look(&mut self.is_stabilized, &cloud, &mut self.scratch, step);
@@ -133,7 +138,7 @@ impl Run for FlowWatch {
         postcard::to_stdvec(&(
             told,
             bodies,
-            &self.compression,
+            (&self.compression, &self.tension),
             (&self.filling, &self.lost_volume),
             self.frames,
         ))
@@ -141,7 +146,8 @@ impl Run for FlowWatch {
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        let Ok((told, bodies, compression, (filling, lost), frames)) = postcard::from_bytes(state) else {
+        let Ok((told, bodies, (compression, tension), (filling, lost), frames)) = postcard::from_bytes(state)
+        else {
             return false;
         };
         self.lost_volume = lost;
@@ -149,7 +155,7 @@ impl Run for FlowWatch {
         (self.is_through, self.lies, at_end, self.closed, self.held_down.seen) = bodies;
         (self.is_stabilized, self.is_driven) = at_end;
         (self.intrusion.told, self.passing.told, self.unevenness.told) = told;
-        (self.compression, self.filling) = (compression, filling);
+        (self.compression, self.filling, self.tension) = (compression, filling, tension);
         self.frames.resume(frames);
         true
     }

@@ -1,0 +1,82 @@
+//! Warning of fluids under tension that nothing damps: their particles pair, and the fluid falls apart.
+
+use serde::{Deserialize, Serialize};
+
+use crate::formulations::fluid::cloud::{FlowCloud, Group};
+use crate::formulations::fluid::lanes::FlowParticle;
+use crate::notation::quantity;
+use crate::parallel::{BlockSum, sum_over_blocks};
+use crate::plugin::SimBuilder;
+use crate::schedule::Step;
+
+/// Pressure below zero over the largest magnitude of the pressure in the same body that counts as tension.
+const TENSION: f64 = 0.1;
+/// Share of the particles in tension that is worth a warning.
+const SHARE: f64 = 0.25;
+/// Frames in sequence for which it has to last: sound passes, an acceleration does not.
+const FRAMES: u32 = 3;
+/// The plugin that damps the noise.
+const REMEDY: &str = "artificial_viscosity";
+
+/// Watches the pressure of every fluid without viscosity.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TensionWatch {
+    /// Frames in sequence for which each group was in tension; none for fluids with friction.
+    frames: Vec<Option<u32>>,
+}
+
+/// Number of particles, and of those in tension.
+#[derive(Clone, Copy, Debug, Default)]
+struct InTension([usize; 2]);
+
+impl BlockSum for InTension {
+    fn add(&mut self, next: &Self) {
+        (0..2).for_each(|k| self.0[k] += next.0[k]);
+    }
+}
+
+impl TensionWatch {
+    /// A watch over the fluids of `groups` that have neither viscosity nor the plugin.
+    pub fn new(groups: &[Group], sim: &SimBuilder<'_>) -> Self {
+        let scene = sim.scene();
+        let is_damped = |group: &Group| {
+            let own = &scene.bodies[group.body.0].plugins;
+            scene.plugins.iter().chain(own).any(|plugin| plugin.name() == REMEDY)
+        };
+        let watched =
+            |group: &Group| group.fluid().is_some_and(|fluid| fluid.viscosity == 0.0) && !is_damped(group);
+        Self { frames: groups.iter().map(|group| watched(group).then_some(0)).collect() }
+    }
+
+    /// Checks all fluids.
+    pub fn look(&mut self, cloud: &FlowCloud, step: &mut Step<'_>) {
+        for (group, frames) in cloud.groups.iter().zip(&mut self.frames) {
+            let Some(count) = frames else { continue };
+            let records = &cloud.records()[group.cloud.clone()];
+            let pressures = || records.iter().filter(|row| row.volume() > 0.0).map(FlowParticle::pressure);
+            let largest = pressures().map(f64::abs).fold(0.0, f64::max);
+            let [all, tense] = count_in_tension(records, TENSION * largest);
+            *count = if tense as f64 > SHARE * all as f64 { *count + 1 } else { 0 };
+            if *count < FRAMES {
+                continue;
+            }
+            *frames = None;
+            step.warnings.push(format!(
+                "`{}` has been in tension since about {}, {:.0} % of it, down to {}, and has no friction: its particles pair, and it falls apart; give it \
+                 `plugins: [density_diffusion(), particle_shifting(), {REMEDY}(alpha: 0.02, beta: 0.0)]`, or, in a closed flow, a pressure at the start that keeps it above zero, `Fluid(pressure: ...)`",
+                step.world.body(group.body).name,
+                quantity(step.clock.time, "s"),
+                100.0 * tense as f64 / all as f64,
+                quantity(pressures().fold(0.0, f64::min), "Pa"),
+            ));
+        }
+    }
+}
+
+fn count_in_tension(records: &[FlowParticle], limit: f64) -> [usize; 2] {
+    let InTension(counts) = sum_over_blocks(records, &|_, records: &[FlowParticle]| {
+        let there = || records.iter().filter(|record| record.volume() > 0.0);
+        InTension([there().count(), there().filter(|record| record.pressure() < -limit).count()])
+    });
+    counts
+}
