@@ -1,5 +1,7 @@
 //! Edges between boundaries that move relative to each other: the effect of their particles on the fluid.
 
+use std::ops::Range;
+
 use glam::{DMat3, DVec3};
 
 use super::repelled::Shares;
@@ -10,8 +12,16 @@ pub struct BoundaryEdges {
     pub fronts: Vec<Front>,
     /// In the order of rows.
     pub particles: Vec<EdgeParticle>,
-    /// Whether there are edges of rigid bodies whose motion is prescribed.
-    pub are_of_bodies: bool,
+    /// Rows of the boundaries that may have edges in this step, in their order.
+    pub rows: Vec<Range<usize>>,
+}
+
+impl BoundaryEdges {
+    /// Whether the boundary of that row may have edges.
+    pub fn may_be_of(&self, row: usize) -> bool {
+        let at = self.rows.partition_point(|rows| rows.end <= row);
+        self.rows.get(at).is_some_and(|rows| rows.contains(&row))
+    }
 }
 
 /// The face of a boundary before a fluid particle.

@@ -35,6 +35,9 @@ impl Run for EdgeForces {
                     continue;
                 };
                 let edge = &edges.particles[at];
+                if !cloud.pairs.gaps.have_edges(front.boundary, edge.row) {
+                    continue;
+                }
                 let (share, _) = front.share_and_depth(&cloud, edge.row);
                 for (sum, force) in front.force.iter_mut().zip(edge.force) {
                     *sum += share * front.normal.dot(edge.inverse * force) * front.normal;
@@ -64,9 +67,9 @@ impl FlowCloud {
         if r < WITHIN * self.kernel.support { self.kernel.value(r) } else { 0.0 }
     }
 
-    /// First row of the group that a row belongs to.
-    pub(super) fn group_start(&self, row: usize) -> usize {
-        self.groups[self.groups.partition_point(|group| group.cloud.end <= row)].cloud.start
+    /// The group that a row belongs to.
+    pub(super) fn group_of(&self, row: usize) -> &Group {
+        &self.groups[self.groups.partition_point(|group| group.cloud.end <= row)]
     }
 
     /// Calls `f` with the row, W V and V w x of every fluid particle beside a boundary particle, `half` a

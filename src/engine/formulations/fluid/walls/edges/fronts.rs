@@ -4,18 +4,20 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use crate::formulations::fluid::cloud::{FlowCloud, Front, Group, part};
+use crate::formulations::fluid::cloud::{BoundaryEdges, FlowCloud, Front, Group, part};
 use crate::formulations::fluid::lists::SideMotion;
 use crate::formulations::fluid::walls::surface_distance::{BoundaryShape, BoundaryView, FaceBefore};
 use crate::plugin::{BodyKind, SimBuilder};
 use crate::scene::{Probe, Quantity};
 use crate::schedule::{Step, StepError};
 
-/// The shapes of the walls, and of the rigid bodies whose motion is prescribed.
+/// The shapes of the walls and rigid bodies of a flow.
 pub struct WallShapes {
     shapes: Vec<BoundaryShape>,
-    /// Their rows, without those of bodies that forces move, once that is known.
-    rows: Option<Vec<Range<usize>>>,
+    /// Their rows.
+    rows: Vec<Range<usize>>,
+    /// For each of them, the fluid particles that have it and another one within the support.
+    beside: Vec<Vec<usize>>,
     /// Whether a probe asks for forces on walls, so that edges count where nothing moves.
     are_asked: bool,
 }
@@ -26,8 +28,10 @@ impl WallShapes {
         // Nothing is repelled here.
         let shape = |group| BoundaryShape::of(group, Vec::new(), 2.0 * sim.body(group.body).spacing, sim);
         let shapes: Vec<BoundaryShape> = Self::candidates(groups, sim).filter_map(shape).collect();
+        let rows = shapes.iter().map(|shape| shape.group.cloud.clone()).collect();
+        let beside = vec![Vec::new(); shapes.len()];
         let are_asked = Self::are_asked_for(groups, sim);
-        (shapes.len() > 1).then_some(Self { shapes, rows: None, are_asked })
+        (shapes.len() > 1).then_some(Self { shapes, rows, beside, are_asked })
     }
 
     /// Whether there may be edges.
@@ -38,19 +42,6 @@ impl WallShapes {
     /// The walls and the rigid bodies.
     fn candidates<'a>(groups: &'a [Group], sim: &'a SimBuilder<'_>) -> impl Iterator<Item = &'a Group> {
         groups.iter().filter(|group| group.is_wall() || sim.body(group.body).kind == BodyKind::Rigid)
-    }
-
-    /// Leaves out the bodies that forces move, and those without suction: ahead of a body that slides far
-    /// along a wall without suction the pressure would rise.
-    fn find_prescribed(&mut self, cloud: &FlowCloud) {
-        if self.rows.is_none() {
-            let motion = |group: &Group| cloud.pairs.gaps.side_of(group.cloud.start).moves;
-            let counts = |group: &Group| {
-                group.is_wall() || group.has_suction() && motion(group) == SideMotion::Prescribed
-            };
-            self.shapes.retain(|shape| counts(&shape.group));
-            self.rows = Some(self.shapes.iter().map(|shape| shape.group.cloud.clone()).collect());
-        }
     }
 
     /// Whether there are several walls, and a probe asks for forces on any.
@@ -70,50 +61,89 @@ impl WallShapes {
         walls().count() > 1 && sim.scene().probes.iter().any(asks)
     }
 
-    /// Whether any two of these walls move against each other.
+    /// Whether any two of these boundaries may move against each other.
     fn part(&self, cloud: &FlowCloud) -> bool {
-        let mut records = self.shapes.iter().flat_map(|shape| &cloud.records[shape.group.cloud.clone()]);
+        let is_free = |rows: &Range<usize>| cloud.pairs.gaps.side_of(rows.start).moves == SideMotion::Free;
+        let mut records = self.rows.iter().flat_map(|rows| &cloud.records[rows.clone()]);
         let first = records.next().map(|record| record.velocity());
-        records.any(|record| Some(record.velocity()) != first)
+        self.rows.iter().any(is_free) || records.any(|record| Some(record.velocity()) != first)
     }
 
-    /// The rows of these boundaries.
-    pub fn rows(&self) -> &[Range<usize>] {
-        self.rows.as_deref().unwrap_or_default()
-    }
-
-    /// Writes down the faces before all fluid particles that have several walls within the support, and
-    /// says whether there may be edges of bodies.
+    /// Writes down the faces before all fluid particles that have several of these boundaries within the
+    /// support, and the rows of the boundaries, if there may be edges.
     pub fn find(
         &mut self,
         cloud: &FlowCloud,
         step: &Step<'_>,
-        out: &mut Vec<Front>,
-    ) -> Result<bool, StepError> {
-        out.clear();
-        self.find_prescribed(cloud);
-        if self.shapes.len() < 2 || !self.are_asked && !self.part(cloud) {
+        out: &mut BoundaryEdges,
+    ) -> Result<(), StepError> {
+        out.fronts.clear();
+        out.rows.clear();
+        if !self.are_asked && !self.part(cloud) {
             self.shapes.iter_mut().for_each(BoundaryShape::forget_motion);
-            return Ok(false);
+            return Ok(());
         }
-        let Self { shapes, rows, .. } = self;
-        let rows = rows.as_deref().unwrap_or_default();
-        for shape in shapes {
-            shape.look(cloud, step, |seen| find_before(seen, cloud, rows, out))?;
+        out.rows.extend_from_slice(&self.rows);
+        self.find_beside(cloud);
+        let Self { shapes, rows, beside, .. } = self;
+        for (shape, beside) in shapes.iter_mut().zip(beside) {
+            if beside.is_empty() {
+                shape.forget_motion();
+                continue;
+            }
+            shape.look(cloud, step, |seen| find_before(seen, cloud, (rows, beside), &mut out.fronts))?;
         }
-        Ok(self.shapes.iter().any(|shape| !shape.group.is_wall()))
+        Ok(())
+    }
+
+    /// Finds the fluid particles beside several boundaries.
+    fn find_beside(&mut self, cloud: &FlowCloud) {
+        let Self { rows, beside, .. } = self;
+        beside.iter_mut().for_each(Vec::clear);
+        for i in (0..cloud.fluid).filter(|&i| cloud.is_close[i] != 0) {
+            let mut first = None;
+            for_each_of(rows, cloud.near_row(i), |k| match first {
+                None => first = Some((k, false)),
+                Some((before, is_written)) => {
+                    if !is_written {
+                        beside[before].push(i);
+                    }
+                    beside[k].push(i);
+                    first = Some((before, true));
+                }
+            });
+        }
     }
 }
 
-/// Writes down the faces of a wall before fluid particles that have another one of the walls of these `rows`
-/// within the support.
-fn find_before(seen: &BoundaryView<'_>, cloud: &FlowCloud, rows: &[Range<usize>], out: &mut Vec<Front>) {
+/// Calls `f` with the number of each of the boundaries, which have these rows of the cloud, that a row of
+/// neighbours has particles of.
+fn for_each_of(rows: &[Range<usize>], mut near: &[u32], mut f: impl FnMut(usize)) {
+    for k in 0..rows.len() {
+        near = &near[near.partition_point(|&j| (j as usize) < rows[k].start)..];
+        let Some(&j) = near.first() else { return };
+        if (j as usize) < rows[k].end {
+            f(k);
+        }
+    }
+}
+
+/// Writes down the faces of a boundary before those of these fluid particles that have another one of the
+/// boundaries with these rows within the support.
+fn find_before(
+    seen: &BoundaryView<'_>,
+    cloud: &FlowCloud,
+    (rows, beside): (&[Range<usize>], &[usize]),
+    out: &mut Vec<Front>,
+) {
     let shape = seen.shape;
-    for i in (0..cloud.fluid).filter(|&i| cloud.is_close[i] != 0) {
-        let own = part(cloud.near_row(i), &shape.group.cloud);
+    let own_rows = &shape.group.cloud;
+    for &i in beside {
+        let own = part(cloud.near_row(i), own_rows);
         let is_beside = |w: &u32| cloud.value_between(i, *w as usize) > 0.0;
-        let mut others = rows.iter().filter(|rows| **rows != shape.group.cloud);
-        if own.is_empty() || !others.any(|rows| part(cloud.near_row(i), rows).iter().any(is_beside)) {
+        let joins = |rows: &&Range<usize>| cloud.pairs.gaps.have_edges(rows.start, own_rows.start);
+        let mut others = rows.iter().filter(|rows| **rows != *own_rows).filter(joins);
+        if !others.any(|rows| part(cloud.near_row(i), rows).iter().any(is_beside)) {
             continue;
         }
         if seen.is_beyond(shape.before(), cloud, i) {
@@ -123,7 +153,7 @@ fn find_before(seen: &BoundaryView<'_>, cloud: &FlowCloud, rows: &[Range<usize>]
         let share = |j: &u32| place.shares.of(cloud, i, *j as usize) * cloud.records[*j as usize].velocity();
         out.push(Front {
             i,
-            boundary: shape.group.cloud.start,
+            boundary: own_rows.start,
             normal,
             weight: nearness,
             distance: place.distance,

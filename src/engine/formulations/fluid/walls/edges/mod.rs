@@ -13,9 +13,15 @@
 //! the adjoint: from the force f_w of pressure on w, face k takes `c_k n_k (n_k.q_w)` with q_w = (...)^-1
 //! f_w, and c_w q_w stays. Their sum is f_w, and the power of all is that of f_w with v*_w.
 //!
-//! Rigid bodies with suction whose motion is prescribed count as walls. A gap beside such a body has its
-//! pressure normal to the gap alone: along it, the force on the particles at the edge of the face is the one
-//! that is found here from the other side.
+//! Rigid bodies count as walls. A gap beside such a body has its pressure normal to the gap alone: along it,
+//! the force on the particles at the edge of the face is the one that is found here from the other side.
+//! Between two bodies that forces move there are no edges: the force would be handed over along another line.
+//!
+//! Beside walls without suction the rate of compression keeps v_w. Fluid that goes along a wall is compressed
+//! by the particles of the wall ahead of it and expands by those behind, alike. With v* for the latter, that
+//! in the corner ahead of a piston would be compressed as the piston goes on, by more the smaller the spacing
+//! (1.5 and 3.3 times the pressure ahead of one that pushes a bore, 8 and 16 deep). Beside walls with suction
+//! the adjoint of the force on those ahead (`wall_compression`) restores the balance.
 //!
 //! This holds for particles that are behind the face of another wall, with a weight of one half where such a
 //! face ends in the middle of a particle's spacing. If the fluid ends at a right angle, the particles behind

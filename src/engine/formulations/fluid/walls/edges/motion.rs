@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use super::fronts::WallShapes;
-use crate::formulations::fluid::cloud::{EdgeParticle, FlowCloud, Group, MIN_SHARE, part};
+use crate::formulations::fluid::cloud::{BoundaryEdges, EdgeParticle, FlowCloud, Group, MIN_SHARE, part};
 use crate::linalg::dyad;
 use crate::plugin::SimBuilder;
 use crate::schedule::{Run, Step, StepError};
@@ -41,22 +41,22 @@ impl EdgeMotion {
     }
 
     /// Adds up the faces around all particles of the walls.
-    fn add_faces(&mut self, cloud: &FlowCloud) {
-        let Self { shapes, sums: all, touched } = self;
+    fn add_faces(&mut self, cloud: &FlowCloud, edges: &BoundaryEdges) {
+        let Self { sums: all, touched, .. } = self;
         all.resize(cloud.records.len() - cloud.fluid, FaceSums::NONE);
         touched.clear();
-        for front in &cloud.edges.fronts {
+        for front in &edges.fronts {
             let beside = |rows| part(cloud.near_row(front.i), rows).iter().map(|&w| w as usize);
-            for w in shapes.rows().iter().flat_map(beside) {
+            for w in edges.rows.iter().flat_map(beside) {
                 let (share, depth) = front.share_and_depth(cloud, w);
                 let sums = &mut all[w - cloud.fluid];
-                if share == 0.0 {
+                if share == 0.0 || !cloud.pairs.gaps.have_edges(front.boundary, w) {
                     continue;
                 }
                 if sums.moments == DMat3::ZERO {
                     touched.push(w);
                 }
-                if cloud.group_start(w) != front.boundary {
+                if cloud.group_of(w).cloud.start != front.boundary {
                     sums.others += share;
                     sums.behind += share * (depth / front.spacing + 0.5).clamp(0.0, 1.0);
                 }
@@ -80,7 +80,10 @@ impl EdgeMotion {
             let own = OWN * (moments.x_axis.x + moments.y_axis.y + moments.z_axis.z);
             let inverse = behind * (moments + DMat3::from_diagonal(DVec3::splat(own))).inverse();
             let v = cloud.records[row].velocity();
-            let excess = inverse * (motion + own * v) - behind * v;
+            let excess = match cloud.group_of(row).has_suction() {
+                true => inverse * (motion + own * v) - behind * v,
+                false => DVec3::ZERO,
+            };
             let [share, rate] = cloud.sums_beside(row, half, |part| part.dot(excess));
             let rate = if share > MIN_SHARE { -rate / share } else { 0.0 };
             out.push(EdgeParticle { row, behind, inverse, own, excess, rate, force: [DVec3::ZERO; 2] });
@@ -93,17 +96,14 @@ impl Run for EdgeMotion {
         let mut cloud = step.resources.get_mut::<FlowCloud>();
         let half = 0.5 * step.clock.dt;
         let mut edges = std::mem::take(&mut cloud.edges);
-        edges.are_of_bodies = self.shapes.find(&cloud, step, &mut edges.fronts)?;
-        cloud.edges.fronts = std::mem::take(&mut edges.fronts);
-        self.add_faces(&cloud);
+        self.shapes.find(&cloud, step, &mut edges)?;
+        self.add_faces(&cloud, &edges);
         self.solve_motion(&cloud, half, &mut edges.particles);
         let mut rates = std::mem::take(&mut cloud.compression);
-        for edge in &edges.particles {
+        for edge in edges.particles.iter().filter(|edge| edge.excess != DVec3::ZERO) {
             cloud.for_each_beside(edge.row, half, |j, _, force| rates[j] -= force.dot(edge.excess));
         }
-        cloud.compression = rates;
-        cloud.edges.particles = edges.particles;
-        cloud.edges.are_of_bodies = edges.are_of_bodies;
+        (cloud.compression, cloud.edges) = (rates, edges);
         Ok(())
     }
 }

@@ -6,7 +6,6 @@ use super::fill::{BoundaryMotion, Fill, Gap, GapRemainder};
 use super::moments::{GapPair, Surrounding, of_surface};
 use super::share::give;
 use crate::formulations::fluid::cloud::{FlowCloud, Group, PARTS};
-use crate::formulations::fluid::lists::SideMotion;
 use crate::parallel::{for_each_block, for_each_heavy_block, sum_over_blocks};
 use crate::schedule::{Run, Step, StepError};
 use crate::world::{Force, Velocity};
@@ -89,8 +88,9 @@ impl GapPressure {
             if pressure != 0.0 {
                 force += gap.closed * gap.around.force(pressure, slope);
             }
-            // Along the gap, `EdgeForces` gives the force on the faces of such bodies.
-            if cloud.edges.are_of_bodies && cloud.pairs.gaps.side_of(row).moves == SideMotion::Prescribed {
+            // Along the gap, `EdgeForces` gives the force on the faces at its ends.
+            let has_edge = |j| cloud.edges.may_be_of(j) && cloud.pairs.gaps.have_edges(row, j);
+            if cloud.edges.may_be_of(row) && across.iter().all(|pair| has_edge(pair.row)) {
                 let toward = gap.around.toward();
                 force = force.dot(toward) * toward;
             }
