@@ -149,15 +149,9 @@ impl RigidBody {
         self.response_at(place, &Wrench { force, torque })
     }
 
-    /// Whether contacts cannot move it.
+    /// Whether the whole motion is prescribed, so that no force moves it.
     pub fn is_driven(&self) -> bool {
         self.constraint.is_complete()
-    }
-
-    /// Whether the whole motion is prescribed in a scene of that many dimensions: nothing moves a body of the
-    /// plane out of it.
-    pub fn is_driven_within(&self, dimensions: usize) -> bool {
-        (0..dimensions).all(|axis| self.is_driven_along(axis)) && self.constraint.turns_as_prescribed()
     }
 
     /// Adds the force of contacts, with the torque about the centre.

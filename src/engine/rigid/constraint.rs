@@ -4,6 +4,7 @@ use glam::{DQuat, DVec3};
 
 use super::rotation::Inertia;
 use crate::plugin::Prescription;
+use crate::scene::Dimension;
 use crate::schedule::{Clock, StepError};
 use crate::world::BodyId;
 
@@ -68,6 +69,8 @@ pub(super) enum RotationConstraint {
 pub(super) struct Constraint {
     pub drives: Vec<DrivenBody>,
     pub turning: RotationConstraint,
+    /// Of the scene: nothing moves a body of the plane out of it.
+    pub dimension: Dimension,
 }
 
 impl Constraint {
@@ -80,7 +83,13 @@ impl Constraint {
 
     /// Whether the whole motion is prescribed.
     pub fn is_complete(&self) -> bool {
-        self.free_axes() == DVec3::ZERO && self.turns_as_prescribed()
+        self.moves_as_prescribed() && self.turns_as_prescribed()
+    }
+
+    /// Whether no force moves the centre.
+    pub fn moves_as_prescribed(&self) -> bool {
+        let free = self.free_axes();
+        (0..self.dimension.count()).all(|axis| free[axis] == 0.0)
     }
 
     /// Whether no torque turns it.

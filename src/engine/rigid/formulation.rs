@@ -87,8 +87,7 @@ impl Formulation for Rigid {
 /// Warns of a body that cannot roll because a condition holds or drives it along some of its axes, and
 /// nothing is said of its rotation.
 fn warn_of_held_rotation(id: BodyId, constraint: &Constraint, sim: &mut SimBuilder<'_>) {
-    let free = constraint.free_axes();
-    let moves = (0..sim.dimension().count()).any(|axis| free[axis] > 0.0);
+    let moves = !constraint.moves_as_prescribed();
     let name = sim.body(id).name.clone();
     let rubs = |(_, contact): (usize, Contact)| {
         let (one, other) = &contact.between;
@@ -162,7 +161,7 @@ impl Rigid {
             (None, None) if drives.is_empty() => RotationConstraint::Free,
             (None, None) => RotationConstraint::Held,
         };
-        Ok(Constraint { drives, turning })
+        Ok(Constraint { drives, turning, dimension: sim.dimension() })
     }
 
     fn body(
@@ -232,7 +231,7 @@ impl Rigid {
             let help = "give it a positive `mass`, or prescribe its whole motion by `Fix`, `Velocity` or `Displacement`";
             return Err(SetupError::parameter(place, message, help));
         }
-        let is_held = constraint.free_axes() == DVec3::ZERO && constraint.is_held_from_turning();
+        let is_held = constraint.moves_as_prescribed() && constraint.is_held_from_turning();
         if !plan.bounds.is_bounded() && !is_held {
             let message = format!("rigid body `{name}` is unbounded, and its motion must be prescribed");
             let help =

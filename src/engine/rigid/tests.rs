@@ -78,6 +78,22 @@ fn a_motion_may_differ_from_rigid_body_to_rigid_body() {
 }
 
 #[test]
+fn in_the_plane_two_components_and_the_rotation_are_the_whole_motion() {
+    let driven = |condition: &str| {
+        let sim = plates(condition).unwrap_or_else(|error| panic!("{error}"));
+        sim.resources().get::<RigidBodies>()[0].is_driven()
+    };
+    assert!(driven(r#"Fix(on: Select(body: "left"))"#));
+    assert!(driven(r#"Velocity(on: Select(body: "left"), value: (1.0, 0.0))"#));
+    assert!(driven(
+        r#"Velocity(on: Select(body: "left"), value: (1.0, 0.0)), RotationRate(on: Select(body: "left"), rate: 2.0)"#
+    ));
+    assert!(!driven(r#"Velocity(on: Select(body: "left"), value: (1.0, None))"#));
+    assert!(!driven(r#"RotationRate(on: Select(body: "left"), rate: 2.0)"#));
+    assert!(!driven(r#"Fix(on: Select(body: "right"))"#));
+}
+
+#[test]
 fn a_body_that_friction_cannot_make_roll_is_warned_of() {
     let warned = |rotation: &str, friction: f64, axes: &str| {
         let text = format!(

@@ -62,3 +62,25 @@ fn a_block_that_swings_on_its_springs_keeps_its_swing() {
     let error = sim.ledger().balance_error();
     assert!(highest > 0.0 && error.abs() < 2e-3 * highest, "{error} {highest}");
 }
+
+#[test]
+fn a_floor_that_is_moved_along_x_and_y_has_no_mass_that_counts() {
+    // The block falls on a floor of 10 g, held or moved at no speed: contacts cannot move either.
+    let steps = |condition: &str| {
+        let mut sim = simulation(&format!(
+            r#"(dimension: Two, materials: {{"s": NeoHookean(density: 1000.0, young: 1.0e8, poisson: 0.3)}},
+                bodies: [
+                    (name: "block", material: "s", shape: Box(min: (0, 0.001), max: (0.2, 0.101)), spacing: 0.02, velocity: (0, -1), formulation: Rigid()),
+                    (name: "floor", material: "s", shape: Box(min: (-0.1, -0.1), max: (0.3, 0)), spacing: 0.02, formulation: Rigid(mass: 0.01)),
+                ],
+                conditions: [{condition}],
+                contacts: [Contact(between: ("block", "floor"), restitution: 0.5)],
+                time: (end: 0.01))"#
+        ));
+        sim.run(|_| true).unwrap();
+        (sim.clock().step, centre(&sim, 0).1.y)
+    };
+    let held = steps(r#"Fix(on: Select(body: "floor"))"#);
+    assert_eq!(steps(r#"Velocity(on: Select(body: "floor"), value: (0.0, 0.0))"#), held);
+    assert!((held.1 - 0.5).abs() < 0.02, "{held:?}");
+}

@@ -79,12 +79,11 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     advice::unfelt_walls(&walls, spin, sim);
     let (walls, touching, gravity) = (advice::walls(sim), sim.scene().touching_pairs(), sim.gravity());
     advice::stiff_interface(&cloud, gravity, sim);
-    let dimensions = sim.dimension().count();
     sim.add_setup(move |setup| {
         start(&cloud, &pressures, setup)?;
         cloud.groups.iter_mut().for_each(|group| group.held = setup.held.contains(group.body));
         if let Some(bodies) = setup.resources.try_get::<RigidBodies>() {
-            let driven = bodies.iter().filter(|body| body.is_driven_within(dimensions));
+            let driven = bodies.iter().filter(|body| body.is_driven());
             driven.for_each(|body| cloud.pairs.gaps.hold(body.id));
         }
         checks::flow_is_slow(&mut cloud, setup.world)?;

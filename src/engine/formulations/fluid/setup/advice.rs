@@ -81,7 +81,6 @@ pub fn sinking(
     let fluids = cloud.groups.iter().filter_map(|group| group.fluid());
     // What is lighter than one of them floats on it.
     let densest = fluids.map(|state| state.density).fold(0.0, f64::max);
-    let dimensions = if cloud.plane { 2 } else { 3 };
     for body in bodies.iter() {
         let falls = (0..3).any(|axis| gravity[axis] != 0.0 && !body.is_driven_along(axis));
         let (view, rows) = setup.world.body_view(body.id);
@@ -91,7 +90,7 @@ pub fn sinking(
         let name_of = |wall: &BodyId| &setup.world.body(*wall).name;
         let is_free = |other: &str| {
             let is_it = |body: &&RigidBody| setup.world.body(body.id).name == other;
-            bodies.iter().find(is_it).is_some_and(|body| !body.is_driven_within(dimensions))
+            bodies.iter().find(is_it).is_some_and(|body| !body.is_driven())
         };
         // A solid, a tool or a wall may hold it; another loose body does not.
         let rests = touching.partners(name).any(|other| other != name && !is_free(other));
