@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-use program::{command, err, meshless};
+use program::{assert_success, command, err, meshless, out};
 
 /// A beam whose run takes minutes.
 const SCENE: &str = r#"(
@@ -207,6 +207,24 @@ fn a_check_that_fails_tells_what_it_has_warned_of() {
     let text = err(&output);
     assert_eq!(output.status.code(), Some(1), "{text}");
     assert!(text.contains("negative volume") && text.contains("check the unit of its stiffness"), "{text}");
+}
+
+#[test]
+fn a_quiet_run_shows_the_warnings_of_its_end() {
+    let folder = folder();
+    // A strip that its kernels let go of: its energy balance does not close.
+    let scene = r#"(dimension: Two, materials: {"rubber": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)},
+        bodies: [(name: "strip", material: "rubber", shape: Box(min: (0, 0), max: (0.2, 0.1)), spacing: 0.0125,
+                  formulation: Eulerian(), plugins: [hourglass_control()])],
+        conditions: [Symmetry(plane: X, at: 0.0), Symmetry(plane: Y, at: 0.0), InitialVelocity(on: Select(), value: ("3*x", None)),
+                     Velocity(on: Select(face: MaxX), value: ("0.6", None))],
+        time: (end: 0.2))"#;
+    std::fs::write(folder.path().join("drawn.ron"), scene).expect("a scene");
+    let output = meshless(&folder, &["run", "drawn.ron", "--quiet"]);
+    assert_success(&output);
+    assert_eq!(out(&output), "");
+    let said = err(&output);
+    assert_eq!(said.matches("warning: energy balance error").count(), 1, "{said}");
 }
 
 #[test]

@@ -350,6 +350,34 @@ fn rubber_that_is_drawn_from_a_clamp_is_not_torn_by_updates() {
     }
 }
 
+/// Metal that its sides draw to so many times its length, and what the run has warned of.
+fn warnings_of_drawn_metal(update: &str, stretch: f64) -> Vec<String> {
+    let text = format!(
+        r#"(dimension: Two, materials: {{"metal": J2(density: 2700, young: 7e10, poisson: 0.3, hardening: Linear(yield_stress: 4e8, modulus: 4e9))}},
+        bodies: [(name: "bar", material: "metal", shape: Box(min: (0, 0), max: (0.02, 0.01)), spacing: 0.00125,
+            formulation: UpdatedLagrangian(update: {update}), plugins: [hourglass_control()])],
+        conditions: [Symmetry(plane: X, at: 0.0), Symmetry(plane: Y, at: 0.0), InitialVelocity(on: Select(), value: ("2000*x", None)),
+            Velocity(on: Select(face: MaxX), value: ("40", None))],
+        time: (end: {:?}))"#,
+        (stretch - 1.0) / 2000.0
+    );
+    let mut sim = simulation(&Source::new("drawn.ron", text));
+    sim.run(|_| true).expect("a run");
+    sim.warnings().to_vec()
+}
+
+/// The shares of stress beside such sides are those of the initial lattice.
+#[test]
+fn a_side_that_draws_metal_unevenly_after_an_update_is_said() {
+    for (update, stretch, warns) in
+        [("Automatic", 1.2, false), ("Automatic", 1.8, true), ("Never", 1.8, false)]
+    {
+        let warnings = warnings_of_drawn_metal(update, stretch);
+        let count = warnings.iter().filter(|text| text.contains("from the first update of the reference on"));
+        assert_eq!(count.count(), usize::from(warns), "{update} to {stretch}: {warnings:?}");
+    }
+}
+
 /// Nobody sees the inside of a clamp: no larger support would find it neighbours, but would make the lists of
 /// all others longer, and the first update take four searches.
 #[test]

@@ -117,7 +117,10 @@ impl Execution {
             end_if_alone_with(error);
         }
         if let Ok(summary) = &finished {
-            if !how.quiet {
+            if how.quiet {
+                // Those of the end are in the summary, which is not shown.
+                progress.warn(&self.sim);
+            } else {
                 say(&summary::text(
                     summary,
                     self.sim.ledger(),

@@ -94,7 +94,8 @@ impl ProgressLine {
         }
     }
 
-    fn warn(&mut self, sim: &Simulation) {
+    /// Shows the warnings since the last ones.
+    pub fn warn(&mut self, sim: &Simulation) {
         for warning in sim.warnings().iter().skip(self.warned) {
             match &self.display {
                 Display::Bar(bar) => bar.suspend(|| complain(&format!("warning: {warning}"))),

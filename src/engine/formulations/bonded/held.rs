@@ -1,6 +1,6 @@
 //! The effect of supports on the particles beside them.
 
-use super::balance::{HeldBody, balanced_shares, warning};
+use super::balance::{HeldBody, balanced_shares, warning, warning_of_update};
 use crate::plugin::SimBuilder;
 use crate::world::BodyId;
 
@@ -13,6 +13,8 @@ pub(in crate::formulations) struct HeldParticles {
     hidden: Vec<(BodyId, Vec<u32>)>,
     /// Warnings of unevenly drawn bodies.
     pub warnings: Vec<String>,
+    /// Warnings of bodies that will be drawn unevenly once they have another reference, without the time.
+    of_updates: Vec<(BodyId, String)>,
 }
 
 impl HeldParticles {
@@ -20,13 +22,20 @@ impl HeldParticles {
     pub fn of(bodies: &[HeldBody<'_>], sim: &SimBuilder<'_>) -> Self {
         let hidden = bodies.iter().map(|body| (body.plan.id, body.plan.hidden.clone())).collect();
         let mut warnings = Vec::new();
+        let of_update = |body: &HeldBody<'_>| warning_of_update(body).map(|text| (body.plan.id, text));
+        let of_updates = bodies.iter().filter_map(of_update).collect();
         let shares = bodies.iter().map(|body| {
             let balanced = balanced_shares(body);
             warnings.extend(warning(body, balanced.imbalance));
             (body.plan.id, balanced.shares)
         });
         let carried = all_shares(shares, sim);
-        Self { carried, hidden, warnings }
+        Self { carried, hidden, warnings, of_updates }
+    }
+
+    /// The warning that a body needs once it has another reference than at the start, without the time.
+    pub fn warning_of_update(&self, body: BodyId) -> Option<&str> {
+        self.of_updates.iter().find(|(id, _)| *id == body).map(|(_, text)| text.as_str())
     }
 
     /// The particles of a body that no other one sees, by their numbers, ascending.

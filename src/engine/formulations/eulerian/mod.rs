@@ -34,6 +34,7 @@ mod particle;
 mod phase;
 mod rates;
 mod rows;
+mod separation;
 mod start;
 mod stress;
 mod within;

@@ -15,6 +15,7 @@ use super::near::{ComputePairs, EulerianNeighbors, NearbyMotion, NeighborRows};
 use super::pairs::EulerianPairs;
 use super::rates::{RATES, VelocityGradients};
 use super::rows::{EulerianKernel, EulerianRows, PointColumns};
+use super::separation;
 use super::stress::Stress;
 use crate::formulations::bonded::{HeldBody, all_shares, balanced_shares};
 use crate::kernels::{Kernel, KernelName};
@@ -230,6 +231,7 @@ fn set_up(
         deformation: vec![DMat3::IDENTITY; view.len()],
         stresses: Vec::new(),
         stable_step: Vec::new(),
+        inside: Vec::new(),
         plane: setup.world.dimension() == Dimension::Two,
     };
     packed.update_lists(bytemuck::cast_slice(&reference), bytemuck::cast_slice(&reference)).map_err(
@@ -246,6 +248,7 @@ fn set_up(
     };
     packed.pack(&columns, 0.0, std::iter::empty());
     look_at_reference(&mut packed, setup)?;
+    packed.inside = separation::inside(&packed);
     setup.resources.insert_solid(phase, packed);
     setup.resources.insert_of(phase, LeavingParticles::default());
     Ok(())

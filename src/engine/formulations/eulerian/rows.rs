@@ -39,6 +39,8 @@ pub(super) struct EulerianRows {
     pub control: EulerianControlRows,
     /// Current stable step of each body, s.
     pub stable_step: Vec<f64>,
+    /// Of every row: whether it is inside of its body in the reference configuration.
+    pub inside: Vec<bool>,
     /// Plane strain.
     pub plane: bool,
 }

@@ -12,6 +12,7 @@ use super::force;
 use super::near::{ComputePairs, NearbyMotion, NeighborRows};
 use super::particle::EulerianParticle;
 use super::rows::{EulerianKernel, EulerianRows, PointColumns};
+use super::separation;
 use crate::linalg::Sym3;
 use crate::parallel::{Lanes4, Maximum, split_by_rows, sum_over_blocks};
 use crate::removal::REMOVED_ENERGY;
@@ -51,6 +52,7 @@ impl Run for Stress {
         self.dilatation.book(self.phase, &packed, bodies, step)?;
         self.update_removed(step, &mut packed)?;
         artificial_stress::write(step.world, self.phase, &packed)?;
+        separation::warn(self.phase, &packed, step);
         self.find_stable_steps(&mut packed);
         let stable = std::mem::take(&mut packed.stable_step);
         // Weights are those of the present places: of the stretches, only the change of volume stiffens what

@@ -106,10 +106,14 @@ impl UpdatedRows {
             if told.as_ref().is_some_and(|told| number_of(told, &begin) >= now) {
                 continue;
             }
-            let text = format!(
-                "{begin} {now} of them at {}; smaller spacings or a larger `support` keep the body together, the plugin `failure` lets it break",
-                quantity(step.clock.time, "s")
-            );
+            let can_fail = step.world.phase(step.world.body(kernel.body).phase).has::<Damage>();
+            let help = match can_fail {
+                true => "the body has been torn there before its material failed",
+                false => {
+                    "smaller spacings or a larger `support` keep the body together, the plugin `failure` lets it break"
+                }
+            };
+            let text = format!("{begin} {now} of them at {}; {help}", quantity(step.clock.time, "s"));
             match told {
                 Some(told) => *told = text,
                 None => step.warnings.push(text),

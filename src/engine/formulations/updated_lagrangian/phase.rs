@@ -8,7 +8,9 @@ use crate::formulations::bonded::{
     AffineFrame, BodyKernel, BondedMotion, BondedRows, Bonds, Cracks, Ellipsoid, HeldParticles, HessianRows,
     PackedParticle, bodies_of, fill_ghosts, frame_of,
 };
+use crate::notation::quantity;
 use crate::parallel::share_rows_of;
+use crate::schedule::Step;
 use crate::solids::{CorrectedStress, LocalMotion, SolidPhase};
 use crate::symmetry::{Ghosts, Repeat};
 use crate::world::{Force, Mobility, Velocity};
@@ -78,6 +80,14 @@ impl UpdatedRows {
     /// or of the stabilizers, and zero of what has been removed.
     pub fn original_sites(&self) -> &[PackedParticle] {
         if self.needs_pair_sites() { self.pair_sites() } else { &self.control.sites }
+    }
+
+    /// Says that body `k`, which gets another reference than at the start, is drawn unevenly from now on.
+    pub fn warn_of_side(&self, k: usize, step: &mut Step<'_>) {
+        let Some(text) = self.held.warning_of_update(self.kernels[k].body) else { return };
+        if !step.warnings.iter().any(|told| told.starts_with(text)) {
+            step.warnings.push(format!("{text} {}", quantity(step.clock.time, "s")));
+        }
     }
 
     /// Gives all ranks the stresses that each has computed for its own rows.

@@ -446,7 +446,10 @@ impl Run for UpdatedSolids {
         self.update_lost(step.world, &mut due)?;
         self.has_lost.clone_from(&due);
         for (k, due) in due.iter_mut().enumerate() {
-            *due = *due || self.is_due(k, step, &packed)?;
+            if !*due && self.is_due(k, step, &packed)? {
+                *due = true;
+                packed.warn_of_side(k, step);
+            }
         }
         if due.contains(&true) {
             let has_lost = std::mem::take(&mut self.has_lost);

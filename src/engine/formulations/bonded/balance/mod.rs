@@ -36,4 +36,4 @@ mod zone;
 
 pub(in crate::formulations) use body::HeldBody;
 pub(in crate::formulations) use shares::balanced_shares;
-pub(in crate::formulations) use warning::warning;
+pub(in crate::formulations) use warning::{warning, warning_of_update};

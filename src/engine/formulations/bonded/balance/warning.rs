@@ -9,11 +9,7 @@ const UNEVEN: f64 = 0.01;
 
 /// Warning of a body with that imbalance beside its sides, if its metal strains unevenly.
 pub(in crate::formulations) fn warning(body: &HeldBody<'_>, imbalance: f64) -> Option<String> {
-    let plan = body.plan;
-    let flows = || plan.solid_law().is_ok_and(|law| law.initial_yield_stress().is_some_and(f64::is_finite));
-    let side = plan.sides.first().filter(|_| imbalance > UNEVEN && flows())?;
-    let (name, face) = (&plan.name, face(side));
-    let beside = format!("the side `{face}` of body `{name}` is held or drawn along its normal alone");
+    let beside = beside(body).filter(|_| imbalance > UNEVEN)?;
     let off = format!("the forces of a uniform stress are off balance by {:.1} %", 100.0 * imbalance);
     Some(if body.stays {
         format!(
@@ -26,6 +22,25 @@ pub(in crate::formulations) fn warning(body: &HeldBody<'_>, imbalance: f64) -> O
              and plastic strain is off by 20 to 60 %; `update: Automatic` or `Never` draws the body evenly"
         )
     })
+}
+
+/// Warning of a body once its reference is another one: its particles carry the right share of their stress
+/// with the initial one alone. The time is to follow.
+pub(in crate::formulations) fn warning_of_update(body: &HeldBody<'_>) -> Option<String> {
+    let beside = beside(body).filter(|_| body.stays)?;
+    Some(format!(
+        "{beside}, and the shares of stress of its particles are those of the initial configuration: plastic strain beside such sides may be off by 20 to 40 % \
+         (`update: Never` and `TotalLagrangian` strain evenly) from the first update of the reference on, at"
+    ))
+}
+
+/// The beginning of warnings of a body with sides beside which its metal may strain unevenly.
+fn beside(body: &HeldBody<'_>) -> Option<String> {
+    let plan = body.plan;
+    let flows = || plan.solid_law().is_ok_and(|law| law.initial_yield_stress().is_some_and(f64::is_finite));
+    let side = plan.sides.first().filter(|_| flows())?;
+    let (name, face) = (&plan.name, face(side));
+    Some(format!("the side `{face}` of body `{name}` is held or drawn along its normal alone"))
 }
 
 /// The name of a side in scenes.

@@ -1,0 +1,90 @@
+//! Bodies that come apart because their kernels do not reach far enough.
+//!
+//! Particles drawn apart by more than the support no longer see each other. In tension a body then breaks,
+//! at a stretch that depends on the support and on no strength of the material. Its particles show it: those
+//! that were inside of it have an open side.
+
+use super::lists::EulerianBody;
+use super::rows::EulerianRows;
+use crate::notation::quantity;
+use crate::schedule::Step;
+use crate::world::{Damage, PhaseId};
+
+/// Offset of the weighted mean of the neighbours of a particle inside of a body, over the support radius, at
+/// most; it is 0 there, and 0.2 half a spacing below a flat surface, at the default support.
+const INSIDE: f64 = 0.1;
+/// The same, at least, of a particle at an open side.
+const OPEN: f64 = 0.15;
+/// Least number of particles laid open that is worth a warning: a single one may stray.
+const FEW: usize = 3;
+/// Cosine of the angle about the direction away from the neighbours within which an open side has none.
+const CONE: f64 = 0.766;
+/// Steps between two looks.
+const EVERY: u64 = 16;
+
+/// Of all rows, as they are in the reference configuration, whether they are inside of their body.
+pub(super) fn inside(packed: &EulerianRows) -> Vec<bool> {
+    let mut inside = vec![false; packed.near.around.len()];
+    for body in &packed.lists.bodies {
+        for row in body.rows.clone() {
+            inside[row] = offset(packed, body, row) < INSIDE && !is_one_sided(packed, row);
+        }
+    }
+    inside
+}
+
+/// Offset of the weighted mean of the neighbours of a row over the support radius.
+fn offset(packed: &EulerianRows, body: &EulerianBody, row: usize) -> f64 {
+    let around = &packed.near.around[row];
+    around.first_moment.length() / (body.support * around.weight_sum)
+}
+
+/// Whether a row has no neighbour within a cone about the direction away from their mean.
+fn is_one_sided(packed: &EulerianRows, row: usize) -> bool {
+    let Some(inward) = packed.near.around[row].first_moment.try_normalize() else { return false };
+    let place = |row: usize| packed.points[row].place.xyz();
+    let (neighbors, _) = packed.near.row(packed.lists.offsets[row], row);
+    neighbors.iter().all(|&j| {
+        let x_ij = place(j as usize) - place(row);
+        -x_ij.dot(inward) < CONE * x_ij.length()
+    })
+}
+
+/// Says of every body that cannot fail how many of its particles have been laid open; the largest number
+/// counts.
+pub(super) fn warn(phase: PhaseId, packed: &EulerianRows, step: &mut Step<'_>) {
+    if step.clock.step % EVERY != 0 || step.world.phase(phase).has::<Damage>() {
+        return;
+    }
+    for body in &packed.lists.bodies {
+        // What has been removed has no neighbours.
+        let is_there = |row: usize| packed.points[row].place.0[3] > 0.0;
+        let is_open = |row: usize| offset(packed, body, row) > OPEN && is_one_sided(packed, row);
+        let is_laid_open = |row: &usize| packed.inside[*row] && is_there(*row) && is_open(*row);
+        let open = body.rows.clone().filter(is_laid_open).count();
+        if open < FEW {
+            continue;
+        }
+        let begin = format!("Eulerian body `{}` has come apart:", step.world.body(body.id).name);
+        let told = step.warnings.iter_mut().find(|warning| warning.starts_with(&begin));
+        if told.as_ref().is_some_and(|told| number_of(told, &begin) >= open) {
+            continue;
+        }
+        let text = format!(
+            "{begin} {open} of its inner particles lay open at {}; particles drawn apart by more than the support do not hold together, \
+             whatever the strength of the material: the plugin `failure` lets it break where the material does, and `TotalLagrangian` and \
+             `UpdatedLagrangian` bodies can be drawn farther",
+            quantity(step.clock.time, "s")
+        );
+        match told {
+            Some(told) => *told = text,
+            None => step.warnings.push(text),
+        }
+    }
+}
+
+/// The number that a warning has given.
+fn number_of(warning: &str, begin: &str) -> usize {
+    let rest = warning[begin.len()..].trim_start();
+    rest.split(' ').next().and_then(|number| number.parse().ok()).unwrap_or(0)
+}
