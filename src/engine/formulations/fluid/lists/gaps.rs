@@ -97,8 +97,8 @@ impl GapPairs {
         }
     }
 
-    /// Whether the particle in row `i` takes part in the edges of the boundary of row `j`: its own, or that of
-    /// another body. Where forces move both, a force that one hands over to the other would change the
+    /// Whether the particle in row `i` takes part in the edges of the boundary of row `j`: its own, or that
+    /// of another body. Where forces move both, a force that one hands over to the other would change the
     /// angular momentum, and so it would between the two sides of a thin body.
     pub fn have_edges(&self, i: usize, j: usize) -> bool {
         let (own, other) = (self.side_of(i), self.side_of(j));
