@@ -240,10 +240,11 @@ impl HourglassControl {
             ("xi", self.xi.is_some(), "an elastic part"),
             ("zeta", self.zeta.is_some(), "a viscous part"),
             ("chi", self.chi.is_some(), "an elastic and a viscous part"),
+            ("after_yield", self.after_yield != AfterYield::YieldStress, "an elastic part"),
         ];
         for (name, is_given, part) in given {
             let uses = |form: &Form| match name {
-                "alpha" | "xi" => *form != Form::Viscous,
+                "alpha" | "xi" | "after_yield" => *form != Form::Viscous,
                 "zeta" => form.is_mixed() || *form == Form::Viscous,
                 _ => form.is_mixed(),
             };

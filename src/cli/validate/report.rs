@@ -100,14 +100,19 @@ fn falls(errors: &[(usize, f64)]) -> bool {
     errors.windows(2).all(|pair| pair[1].1.abs() < pair[0].1.abs())
 }
 
+/// That share in per cent, to a hundredth.
+fn percent(share: f64) -> f64 {
+    (1e4 * share).round() / 100.0
+}
+
 fn line(check: &Check) -> String {
     let measured = number(check.measured);
     let reference = number(check.reference);
     let unit = if check.unit == "1" { "" } else { check.unit };
     let error = format!("{:+.3} %", 100.0 * check.error());
     let (error, tolerance) = match check.tolerance {
-        Tolerance::Relative(most) => (error, format!("+-{} %", 100.0 * most)),
-        Tolerance::Between(low, high) => (error, format!("{} to {:+} %", 100.0 * low, 100.0 * high)),
+        Tolerance::Relative(most) => (error, format!("+-{} %", percent(most))),
+        Tolerance::Between(low, high) => (error, format!("{} to {:+} %", percent(low), percent(high))),
         Tolerance::Absolute(most) => (error, format!("+-{most} {unit}")),
         Tolerance::Below => (String::new(), "below".to_owned()),
         Tolerance::Above => (String::new(), "above".to_owned()),
