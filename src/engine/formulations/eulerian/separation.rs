@@ -53,7 +53,7 @@ fn is_one_sided(packed: &EulerianRows, row: usize) -> bool {
 /// Says of every body that cannot fail how many of its particles have been laid open; the largest number
 /// counts.
 pub(super) fn warn(phase: PhaseId, packed: &EulerianRows, step: &mut Step<'_>) {
-    if step.clock.step % EVERY != 0 || step.world.phase(phase).has::<Damage>() {
+    if !step.clock.step.is_multiple_of(EVERY) || step.world.phase(phase).has::<Damage>() {
         return;
     }
     for body in &packed.lists.bodies {
