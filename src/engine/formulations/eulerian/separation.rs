@@ -7,6 +7,7 @@
 use super::lists::EulerianBody;
 use super::rows::EulerianRows;
 use crate::notation::quantity;
+use crate::parallel::sum_over_own_blocks;
 use crate::schedule::Step;
 use crate::world::{Damage, PhaseId};
 
@@ -57,11 +58,7 @@ pub(super) fn warn(phase: PhaseId, packed: &EulerianRows, step: &mut Step<'_>) {
         return;
     }
     for body in &packed.lists.bodies {
-        // What has been removed has no neighbours.
-        let is_there = |row: usize| packed.points[row].place.0[3] > 0.0;
-        let is_open = |row: usize| offset(packed, body, row) > OPEN && is_one_sided(packed, row);
-        let is_laid_open = |row: &usize| packed.inside[*row] && is_there(*row) && is_open(*row);
-        let open = body.rows.clone().filter(is_laid_open).count();
+        let open = laid_open(packed, body);
         if open < FEW {
             continue;
         }
@@ -81,6 +78,19 @@ pub(super) fn warn(phase: PhaseId, packed: &EulerianRows, step: &mut Step<'_>) {
             None => step.warnings.push(text),
         }
     }
+}
+
+/// Number of inner particles of a body that have an open side, over all ranks.
+fn laid_open(packed: &EulerianRows, body: &EulerianBody) -> usize {
+    // What has been removed has no neighbours.
+    let is_there = |row: usize| packed.points[row].place.0[3] > 0.0;
+    let is_open = |row: usize| offset(packed, body, row) > OPEN && is_one_sided(packed, row);
+    let inside = &packed.inside[body.rows.clone()];
+    let count = sum_over_own_blocks(inside, &|first, inside: &[bool]| {
+        let rows = body.rows.start + first..;
+        rows.zip(inside).filter(|&(row, inside)| *inside && is_there(row) && is_open(row)).count() as f64
+    });
+    count as usize
 }
 
 /// The number that a warning has given.
