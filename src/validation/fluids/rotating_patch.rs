@@ -117,8 +117,8 @@ fn nearest_side(simulation: &Simulation, patch: BodyId) -> Result<f64> {
     Ok((0..30).map(mean).fold(f64::INFINITY, f64::min))
 }
 
-/// Fraction of the particles in the largest group of particles that act on each other: nearer than the support
-/// radius `gap`, m.
+/// Fraction of the particles in the largest group of particles that act on each other: nearer than the
+/// support radius `gap`, m.
 fn largest_piece(simulation: &Simulation, patch: BodyId, gap: f64) -> Result<f64> {
     let positions = positions(simulation, patch)?;
     let mut waiting: Vec<usize> = (0..positions.len()).collect();
