@@ -21,7 +21,8 @@ pub(crate) const CASE: Case = Case {
 /// In equilibrium the floor carries the weight, whatever the water is compressed to.
 const SOURCE: &str = "weight over area of the floor";
 const GRAVITY: f64 = 9.81;
-const WEIGHT: f64 = 9810.0;
+/// Weight of a volume of water, N/m3.
+const WEIGHT: f64 = 1000.0 * GRAVITY;
 /// Potential energy of the water, J: rho g H^2 / 2 per metre.
 const POTENTIAL: f64 = 4905.0;
 
@@ -66,21 +67,12 @@ fn hydrostatic_tank(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         Ok(())
     })?;
     let end = simulation.end();
-    let mean = |record: &Record, from: f64, to: f64| {
-        let values: Vec<f64> = record
-            .0
-            .iter()
-            .filter(|(t, _)| (from * end..=to * end).contains(t))
-            .map(|sample| sample.1)
-            .collect();
-        values.iter().sum::<f64>() / values.len() as f64
-    };
     let largest = kinetic.0.iter().map(|sample| sample.1).reduce(f64::max).context("no sample")?;
-    let (early, late) = (mean(&kinetic, 0.0, 0.5), mean(&kinetic, 0.5, 1.0));
+    let (early, late) = (kinetic.mean(&(0.0..=0.5 * end))?, kinetic.mean(&(0.5 * end..=end))?);
     Ok(vec![
         Check::new(
             "pressure at the bottom",
-            mean(&pressure, 0.25, 1.0),
+            pressure.mean(&(0.25 * end..=end))?,
             weight,
             Tolerance::Relative(if across < 40 { 0.01 } else { 0.005 }),
             "Pa",
