@@ -19,7 +19,7 @@ pub use constraint::{Drive, DrivenBody, DrivenRotation, HalvedBody};
 pub(crate) use formulation::checked_axis;
 pub use formulation::{Rigid, Rotation};
 pub(crate) use inertia::sphere_of;
-pub use nodes::{Nodes, RigidNode, Round};
+pub use nodes::{Feature, Nodes, RigidNode, Round};
 pub use outline::Rim;
 pub use prescribed::PrescribedAcceleration;
 pub use rotation::Inertia;

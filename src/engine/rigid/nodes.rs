@@ -12,6 +12,8 @@ use crate::space::Dimension;
 
 /// Cosine of the angle between two normals above which two faces do not touch: some 96 degrees.
 const ACROSS: f64 = -0.1;
+/// Length of an edge that counts as a point, over the spacing.
+const SHORT: f64 = 0.5;
 
 /// Shape of a node.
 #[derive(Clone, Copy, Debug)]
@@ -22,6 +24,19 @@ pub enum Round {
     Ball(f64),
     /// The lowest point of a circle about it.
     Rim(Rim),
+    /// Where a straight edge, whose middle it is, crosses an edge of another body: from there to its end, m.
+    Edge(DVec3),
+}
+
+/// The part of a surface that a node is of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Feature {
+    /// A corner, or a round outline.
+    Corner,
+    /// An edge along that unit vector.
+    Edge(DVec3),
+    /// A face with that outward normal.
+    Face(DVec3),
 }
 
 /// A place at which a rigid body touches others.
@@ -29,8 +44,8 @@ pub enum Round {
 pub struct RigidNode {
     /// The place in the reference configuration, m.
     pub point: DVec3,
-    /// Outward normal of the surface there; zero on edges and corners, and for round nodes.
-    normal: DVec3,
+    /// What it is of, in the reference configuration.
+    pub feature: Feature,
     /// Shape of the node.
     pub round: Round,
     /// Length that it represents, m.
@@ -41,9 +56,17 @@ impl RigidNode {
     /// Radius of a round node, else zero, m.
     pub fn radius(&self) -> f64 {
         match self.round {
-            Round::Point => 0.0,
+            Round::Point | Round::Edge(_) => 0.0,
             Round::Ball(radius) => radius,
             Round::Rim(rim) => rim.radius,
+        }
+    }
+
+    /// How far from its place it may touch, m.
+    pub fn reach(&self) -> f64 {
+        match self.round {
+            Round::Edge(half) => half.length(),
+            Round::Point | Round::Ball(_) | Round::Rim(_) => self.radius(),
         }
     }
 
@@ -51,12 +74,15 @@ impl RigidNode {
     /// does not touch what stands across it. Where the corner of another body passes a point of a face, the
     /// nearest surface of that body is for a moment the side beside the corner.
     pub fn faces(&self, normal: DVec3) -> bool {
-        self.normal == DVec3::ZERO || self.normal.dot(normal) < ACROSS
+        match self.feature {
+            Feature::Face(own) => own.dot(normal) < ACROSS,
+            Feature::Corner | Feature::Edge(_) => true,
+        }
     }
 
     /// Whether it is a point of a face, neither of an edge nor of something round.
     pub fn is_of_face(&self) -> bool {
-        self.normal != DVec3::ZERO
+        matches!(self.feature, Feature::Face(_))
     }
 }
 
@@ -69,8 +95,8 @@ pub struct Nodes {
 
 impl Nodes {
     /// The centre of a sphere or disc. Of other shapes circles where the outline is round, and elsewhere
-    /// points on sharp edges and corners, and the outermost particles, moved to the surface, beside corners
-    /// to all their faces.
+    /// points on sharp edges and corners, the outermost particles, moved to the surface, beside corners to
+    /// all their faces, and in three dimensions the edges themselves.
     pub(super) fn new(
         shape: &Shape,
         surface: &dyn Surface,
@@ -79,21 +105,21 @@ impl Nodes {
         dimension: Dimension,
     ) -> Self {
         let outline = Outline::of(shape);
-        let node = |point, normal, round, size| RigidNode { point, normal, round, size };
+        let node = |point, feature, round, size| RigidNode { point, feature, round, size };
         if let Some((center, radius)) = sphere_of(shape) {
-            let ball = node(center, DVec3::ZERO, Round::Ball(radius), 2.0 * radius);
+            let ball = node(center, Feature::Corner, Round::Ball(radius), 2.0 * radius);
             return Self { list: vec![ball], outline };
         }
         let mut list = Vec::new();
         if let Some(outline) = &outline {
             let (centers, rim) = outline.rims(spacing);
             let size = if centers.len() == 1 { 2.0 * rim.radius } else { spacing };
-            list.extend(centers.iter().map(|&center| node(center, DVec3::ZERO, Round::Rim(rim), size)));
+            list.extend(centers.iter().map(|&center| node(center, Feature::Corner, Round::Rim(rim), size)));
         }
         let is_round = |x: DVec3| outline.is_some_and(|outline| outline.holds(x));
-        let edges = along(&surface.edges(spacing), spacing);
-        let corners = edges.into_iter().filter(|&x| !is_round(x));
-        list.extend(corners.map(|x| node(x, DVec3::ZERO, Round::Point, spacing)));
+        let edges = surface.edges(spacing);
+        let on_edges = along(&edges, spacing).into_iter().filter(|&(x, _)| !is_round(x));
+        list.extend(on_edges.map(|(x, feature)| node(x, feature, Round::Point, spacing)));
         let faces = NearestFaces::new(surface, spacing, dimension);
         for site in sites {
             let nearest = surface.closest(site.position);
@@ -101,9 +127,15 @@ impl Nodes {
                 continue;
             }
             for face in faces.of(site.position, nearest).into_iter().filter(|face| !is_round(face.point)) {
-                list.push(node(face.point, face.normal, Round::Point, spacing));
+                list.push(node(face.point, Feature::Face(face.normal), Round::Point, spacing));
             }
         }
+        // Shorter ones have points at their ends that nothing passes between.
+        let long = edges.iter().filter(|[a, b]| a.distance(*b) > SHORT * spacing);
+        list.extend(long.map(|&[a, b]| {
+            let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
+            node(middle, Feature::Edge(half.normalize()), Round::Edge(half), spacing)
+        }));
         Self { list, outline }
     }
 
@@ -132,17 +164,19 @@ impl Nodes {
     }
 }
 
-/// The ends of edges and points between them. Of points in one cell of half a spacing the first is kept, so
-/// that the many short edges of a fine mesh make no more of them than a coarse one has; ends come first.
-fn along(edges: &[[DVec3; 2]], spacing: f64) -> Vec<DVec3> {
-    let ends = edges.iter().flatten().copied();
+/// The ends of edges, which are corners, and points between them. Of points in one cell of half a spacing the
+/// first is kept, so that the many short edges of a fine mesh make no more of them than a coarse one has;
+/// ends come first.
+fn along(edges: &[[DVec3; 2]], spacing: f64) -> Vec<(DVec3, Feature)> {
+    let ends = edges.iter().flatten().map(|&end| (end, Feature::Corner));
     let between = edges.iter().flat_map(|&[a, b]| {
         let parts = (a.distance(b) / spacing).round().max(1.0) as usize;
-        (1..parts).map(move |part| a + (b - a) * (part as f64 / parts as f64))
+        let feature = Feature::Edge((b - a).normalize_or_zero());
+        (1..parts).map(move |part| (a + (b - a) * (part as f64 / parts as f64), feature))
     });
     let mut taken = BTreeSet::new();
     let cell = |x: DVec3| (x / (0.5 * spacing)).to_array().map(|c| c.floor() as i64);
-    ends.chain(between).filter(|x| taken.insert(cell(*x))).collect()
+    ends.chain(between).filter(|(x, _)| taken.insert(cell(*x))).collect()
 }
 
 #[cfg(test)]
@@ -153,7 +187,7 @@ mod tests {
     fn ends_are_kept_and_fine_edges_are_thinned() {
         let (a, b, c) = (DVec3::ZERO, DVec3::new(1.0, 0.0, 0.0), DVec3::new(1.0, 0.33, 0.0));
         let points = along(&[[a, b], [b, c]], 0.1);
-        assert!(points.contains(&a) && points.contains(&b) && points.contains(&c));
+        assert!([a, b, c].iter().all(|&end| points.contains(&(end, Feature::Corner))));
         assert_eq!(points.len(), 11 + 3);
         let fine: Vec<[DVec3; 2]> =
             (0..1000).map(|k| [k, k + 1].map(|k| DVec3::X * (f64::from(k) / 1000.0))).collect();

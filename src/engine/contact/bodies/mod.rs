@@ -1,6 +1,8 @@
 //! The bodies in contact in their current state: their motion bounds, particles with the ellipsoids into
 //! which they deform, points and surfaces.
 
+mod crossing;
+
 mod error;
 
 mod motion;
@@ -13,6 +15,7 @@ mod node_view;
 
 mod sides;
 
+pub(super) use crossing::{Crossing, RAMP, share_of_slope};
 pub use error::CONTACT;
 pub(super) use error::failed;
 pub(super) use members::{BUMPS, MemberColumns, MemberParticles, Members};

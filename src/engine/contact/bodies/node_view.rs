@@ -2,9 +2,10 @@
 
 use glam::DVec3;
 
+use super::crossing::Crossing;
 use super::members::Members;
 use super::shape::{ParticleShape, Proximity, on_surface};
-use crate::rigid::{RigidBody, Round};
+use crate::rigid::{Feature, RigidBody, Round};
 use crate::shapes::SurfacePoint;
 use crate::solids::LocalMotion;
 
@@ -35,11 +36,19 @@ impl NodeView<'_> {
         }
     }
 
-    /// Whether a node is a point of a face of a rigid body.
-    pub fn is_of_face(&self, i: usize) -> bool {
+    /// What part of the surface of a rigid body a node is of, in its reference configuration.
+    pub fn feature(&self, i: usize) -> Feature {
         match self {
-            Self::Particles(_) => false,
-            Self::Rigid(body) => body.nodes.list()[i].is_of_face(),
+            Self::Particles(_) => Feature::Corner,
+            Self::Rigid(body) => body.nodes.list()[i].feature,
+        }
+    }
+
+    /// A direction of the reference configuration of a rigid body as the body has turned.
+    pub fn turned(&self, direction: DVec3) -> DVec3 {
+        match self {
+            Self::Particles(_) => direction,
+            Self::Rigid(body) => body.state.rotation * direction,
         }
     }
 
@@ -83,6 +92,14 @@ impl NodeView<'_> {
         }
     }
 
+    /// How far from its place a node may touch, in the reference configuration, m.
+    pub fn reach(&self, i: usize) -> f64 {
+        match self {
+            Self::Particles(members) => members.radius(i),
+            Self::Rigid(body) => body.nodes.list()[i].reach(),
+        }
+    }
+
     /// Length that a node represents, m.
     pub fn size(&self, i: usize) -> f64 {
         match self {
@@ -97,7 +114,9 @@ impl NodeView<'_> {
             Self::Particles(members) => members.shape(i),
             Self::Rigid(body) => match body.nodes.list()[i].round {
                 Round::Ball(radius) => ParticleShape { radius, gradient: None },
-                Round::Point | Round::Rim(_) => ParticleShape { radius: 0.0, gradient: None },
+                Round::Point | Round::Rim(_) | Round::Edge(_) => {
+                    ParticleShape { radius: 0.0, gradient: None }
+                }
             },
         };
         on_surface(distance, normal, shape)
@@ -105,8 +124,11 @@ impl NodeView<'_> {
 
     /// The nearest point of the surface of a tool to a node with its centre at `x`, m. For a rim the distance
     /// is that of its lowest point, and the surface the plane that is tangential to it at the point nearest
-    /// to the centre. None where a rim lies flat.
+    /// to the centre. None where a rim lies flat, and where an edge crosses none of the tool.
     pub fn nearest(&self, i: usize, x: DVec3, tool: &RigidBody) -> Option<SurfacePoint> {
+        if self.is_edge(i) {
+            return Some(self.crossing(i, x, tool)?.at);
+        }
         let nearest = tool.surface.closest(tool.reference(x));
         let Some(arm) = self.lowest(i, nearest.normal, tool) else { return Some(nearest) };
         let arm = arm?;
@@ -114,6 +136,21 @@ impl NodeView<'_> {
         let signed_distance = nearest.signed_distance + below;
         let point = tool.reference(x) + arm - nearest.normal * signed_distance;
         Some(SurfacePoint { point, signed_distance, ..nearest })
+    }
+
+    /// Whether a node is an edge.
+    pub fn is_edge(&self, i: usize) -> bool {
+        matches!(self, Self::Rigid(body) if matches!(body.nodes.list()[i].round, Round::Edge(_)))
+    }
+
+    /// Where the edge with its middle at `x` crosses one of a tool, if it is an edge and comes so near that
+    /// this counts.
+    pub fn crossing(&self, i: usize, x: DVec3, tool: &RigidBody) -> Option<Crossing> {
+        let Self::Rigid(body) = self else { return None };
+        let Round::Edge(half) = body.nodes.list()[i].round else { return None };
+        let half = tool.state.rotation.inverse() * (body.state.rotation * half);
+        let middle = tool.reference(x);
+        Crossing::of(&*tool.surface, [middle - half, middle + half], self.size(i))
     }
 
     /// Whether the lowest point of a rim is inside of the tool; a tool in the hole of a ring is near its
@@ -145,7 +182,7 @@ impl NodeView<'_> {
             Round::Rim(_) if body.nodes.is_ball() == tool.nodes.is_ball() => turn == NodeTurn::Second,
             Round::Rim(_) => tool.nodes.is_ball(),
             // The corner of a body may come between two rims.
-            Round::Ball(_) | Round::Point => node.is_of_face() || tool.nodes.is_ball(),
+            Round::Ball(_) | Round::Point | Round::Edge(_) => node.is_of_face() || tool.nodes.is_ball(),
         }
     }
 

@@ -1,6 +1,7 @@
 //! Contact in small scenes, against closed forms and invariants.
 
 mod at_rest;
+mod crossing_edges;
 mod deformed;
 mod heat;
 mod images;

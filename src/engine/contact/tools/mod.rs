@@ -6,7 +6,7 @@ mod reaction;
 
 mod together;
 
-mod face_share;
+mod share;
 
 mod on_surface;
 

@@ -67,7 +67,7 @@ impl Nearby {
             self.filter.select(nodes.len(), &mut self.candidates, &|i, budget: &mut MinimumLength| {
                 let x = tool.reference(sides.near(nodes.position(i), tool));
                 let size = nodes.size(i);
-                let (reach, skin, near) = (largest_stretch * nodes.radius(i), SKIN * size, NEAR * size);
+                let (reach, skin, near) = (largest_stretch * nodes.reach(i), SKIN * size, NEAR * size);
                 let gap = (bounds.min - x).max(x - bounds.max).max(DVec3::ZERO).length() - reach;
                 if gap < skin {
                     budget.add_length(skin - near);

@@ -2,17 +2,17 @@
 
 use glam::DVec3;
 
-use super::face_share::FaceShare;
 use super::nearby::NEAR;
 use super::reaction::NodePush;
+use super::share::Share;
 use super::together::{ContactSite, CoupledResponse};
 use crate::contact::active::MinimumLength;
-use crate::contact::bodies::{ContactSides, NodeMotion, NodeView, Proximity};
+use crate::contact::bodies::{ContactSides, Crossing, NodeMotion, NodeView, Proximity};
 use crate::contact::laws::Touch;
 use crate::contact::response::time_step::NormalMotion;
 use crate::contact::response::{ContactEnergy, ContactState, History, Interaction, Losses, PairKey};
 use crate::parallel::BlockSum;
-use crate::rigid::RigidBody;
+use crate::rigid::{Feature, RigidBody};
 use crate::world::sum_by_row;
 
 /// A node that touches.
@@ -24,7 +24,7 @@ pub(in crate::contact) struct NodeTouch {
     /// Nearest point of the surface, m.
     point: DVec3,
     near: Proximity,
-    share: FaceShare,
+    share: Share,
 }
 
 impl NodeTouch {
@@ -77,9 +77,16 @@ impl OnSurface<'_> {
         let i = node as usize;
         let own_place = nodes.position(i);
         let center = self.sides.near(own_place, tool);
-        let nearest = nodes.nearest(i, center, tool)?;
+        let crossing = if nodes.is_edge(i) { Some(nodes.crossing(i, center, tool)?) } else { None };
+        let nearest = match &crossing {
+            Some(Crossing { at, .. }) => *at,
+            None => nodes.nearest(i, center, tool)?,
+        };
         let normal = tool.state.rotation * nearest.normal;
-        let near = nodes.nearness(i, nearest.signed_distance, normal);
+        let mut near = nodes.nearness(i, nearest.signed_distance, normal);
+        if let Some(crossing) = &crossing {
+            near.scale = crossing.scale;
+        }
         let is_far = near.overlap <= -NEAR * near.scale * nodes.size(i);
         if is_far
             || !nodes.is_there(i)
@@ -100,10 +107,14 @@ impl OnSurface<'_> {
         let touches = near.overlap > 0.0 && nodes.reaches(i, center, nearest.normal, tool);
         // Where the body of the node has it, a period away from the image that touches.
         touches.then(|| {
-            let share = if nodes.is_of_face(i) {
-                FaceShare::new(&nearest, nodes.size(i), tool)
-            } else {
-                FaceShare::WHOLE
+            let share = match (&crossing, nodes.feature(i)) {
+                (Some(crossing), _) => Share::of_crossing(crossing, tool),
+                (None, Feature::Corner) => Share::WHOLE,
+                (None, Feature::Face(_)) => Share::on_face(&nearest, nodes.size(i), tool),
+                (None, Feature::Edge(e)) => {
+                    let edge = tool.state.rotation.inverse() * nodes.turned(e);
+                    Share::on_edge(edge, &nearest, nodes.size(i), tool)
+                }
             };
             NodeTouch { x: center, shift: own_place - center, point: nearest.point, near, share }
         })
@@ -170,13 +181,12 @@ impl OnSurface<'_> {
         let stiffness = [own(normal), tool.inverse_mass_at(place, normal)];
         let stiffness = stiffness.map(|inverse_mass| response.spring.stiffness * inverse_mass);
         // u grad w, with the energy w u of the spring.
-        let along = if share.gradient == DVec3::ZERO {
-            DVec3::ZERO
-        } else {
-            response.spring.energy / share.share * share.gradient
-        };
+        let [along, couple] = share.derivatives(response.spring.energy);
         let (force, heat) = (response.force - along, losses.friction);
-        (response.history, NodePush { arm, place, shift, force, center: x, turning, heat, stiffness })
+        (
+            response.history,
+            NodePush { arm, place, shift, force, couple: -couple, center: x, turning, heat, stiffness },
+        )
     }
 
     /// Forces of all contacts of the step on rigid bodies, where dashpots need them.

@@ -19,6 +19,8 @@ pub(in crate::contact) struct NodePush {
     pub shift: DVec3,
     /// Force on the node, N.
     pub force: DVec3,
+    /// Couple on the body of the node and, opposite, on the other one, N m.
+    pub couple: DVec3,
     /// The place of a particle, m, and a force on it and, opposite, on the other body there, because the
     /// normal turns as it moves, N.
     pub center: DVec3,
@@ -59,11 +61,13 @@ pub(super) fn push<T: Sync>(
     let both = [of(sides.first), of(sides.second)];
     let middle = both.map(|k| k.map_or(DVec3::ZERO, |k| bodies[k].state.center));
     let of_contact = |k: usize| {
-        let NodePush { place, center, shift, force, turning, stiffness, .. } = pushes[k];
+        let NodePush { place, center, shift, force, couple, turning, stiffness, .. } = pushes[k];
         let mut sum = Pushes { stiffness, ..Pushes::default() };
         sum.on[0].push(place + shift - middle[0], force);
         sum.on[1].push(place - middle[1], -force);
         sum.on[1].push(center - middle[1], -turning);
+        sum.on[0].torque += couple;
+        sum.on[1].torque -= couple;
         sum
     };
     let Pushes { on, stiffness } = sum_by_row(count, pushes.len(), &|k| met[k].0.0 as usize, &of_contact);

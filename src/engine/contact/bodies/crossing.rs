@@ -1,0 +1,128 @@
+//! Where a straight edge of a rigid body crosses a sharp edge of a surface.
+//!
+//! Points on both edges, however dense, pass each other by. What two edges have in common is the deepest
+//! point of one inside of the other body: along the edge `x(s) = a + s e` the signed distance of a convex
+//! body has one minimum, where the slope n . e changes its sign. There the edge passes below a ridge, from
+//! the face of normal n_1 to that of n_2, and the overlap is the depth d of that point. Because it is a
+//! minimum over s, its derivative with a motion of the bodies is that at a fixed s,
+//!
+//! ```text
+//! grad d = -g,     g = l_1 n_1 + l_2 n_2,     g . e = 0,     l_1 + l_2 = 1
+//! ```
+//!
+//! which is across both edges. So the force is the derivative of an energy, and does not jump where the edge
+//! slides along the ridge. A spring must not begin at a finite depth: the energy has a weight w, the product
+//! of three. Each grows from zero to one: with the smaller slope, because an edge that lies along a face
+//! crosses the end of that face without a force; with the distance from the ends of the edge, where the
+//! deepest point is a corner; and with the distance of a third face, where the ridge ends.
+
+use glam::DVec3;
+
+use crate::shapes::{Surface, SurfacePoint};
+
+/// Slopes over the faces on both sides of a ridge below which it counts as flat, and from which on it counts
+/// whole: sines of 6 and 24 degrees.
+const SLOPES: [f64; 2] = [0.1, 0.4];
+/// Distance within which weights grow, over the length that a node represents. Where faces and lattices are
+/// aligned the outermost points of a face are half of that length inside: they have full weight.
+pub(in crate::contact) const RAMP: f64 = 0.4;
+/// Bisections: they reduce the length of an edge to round-off.
+const BISECTIONS: usize = 48;
+
+/// The crossing of an edge and a ridge, in the reference configuration of the surface.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::contact) struct Crossing {
+    /// The deepest point of the edge, m, its signed distance, m, and the unit vector across both edges,
+    /// outward.
+    pub at: SurfacePoint,
+    /// d(overlap)/d(approach along the normal): |g|.
+    pub scale: f64,
+    /// w, its gradient with the place of the edge, 1/m, and its derivative with a rotation of the edge.
+    pub share: f64,
+    pub gradient: DVec3,
+    pub turning: DVec3,
+}
+
+/// A point of the edge, and the surface beside it.
+struct Side {
+    x: DVec3,
+    normal: DVec3,
+    distance: f64,
+}
+
+impl Side {
+    fn new(surface: &dyn Surface, x: DVec3) -> Self {
+        let SurfacePoint { normal, signed_distance, .. } = surface.closest(x);
+        Self { x, normal, distance: signed_distance }
+    }
+}
+
+impl Crossing {
+    /// Of the edge between two ends that represents a length, m, if it comes so near to the surface.
+    pub fn of(surface: &dyn Surface, ends: [DVec3; 2], size: f64) -> Option<Self> {
+        let length = ends[0].distance(ends[1]);
+        let e = (ends[1] - ends[0]) / length;
+        let [mut before, mut after] = ends.map(|end| Side::new(surface, end));
+        if before.normal.dot(e) >= 0.0 || after.normal.dot(e) <= 0.0 {
+            return None;
+        }
+        let mut half = 0.5 * length;
+        for _ in 0..BISECTIONS {
+            let middle = Side::new(surface, 0.5 * (before.x + after.x));
+            // A distance changes by as much as the way at most.
+            if middle.distance - half > size {
+                return None;
+            }
+            half *= 0.5;
+            if middle.normal.dot(e) < 0.0 { before = middle } else { after = middle }
+        }
+        let (point, normals) = (0.5 * (before.x + after.x), [before.normal, after.normal]);
+        let slopes = [-normals[0].dot(e), normals[1].dot(e)];
+        let g = (slopes[1] * normals[0] + slopes[0] * normals[1]) / (slopes[0] + slopes[1]);
+        let (scale, signed_distance) = (g.length(), before.distance.max(after.distance));
+        let at = SurfacePoint { point, normal: g / scale, signed_distance };
+        let mut crossing = Self { at, scale, share: 0.0, gradient: DVec3::ZERO, turning: DVec3::ZERO };
+        if signed_distance < 0.0 {
+            // The nearer end.
+            let [from_start, from_end] = ends.map(|end| point.distance(end));
+            let (away, way) = if from_start < from_end { (e, from_start) } else { (-e, from_end) };
+            crossing.weigh(surface, away, way, normals, RAMP * size);
+        }
+        Some(crossing)
+    }
+
+    /// Sets the weight of a crossing that is `way`, m, away from an end of the edge along the unit vector e;
+    /// the weight grows within `ramp`, m.
+    fn weigh(&mut self, surface: &dyn Surface, e: DVec3, way: f64, normals: [DVec3; 2], ramp: f64) {
+        let SurfacePoint { point, signed_distance, .. } = self.at;
+        // Where the edge moves by dx, the deepest point moves by -(across . dx) along it.
+        let change = normals[0] - normals[1];
+        let across = change / change.dot(e);
+        let (end, of_end) = growing(way / ramp, -across / ramp);
+        // Deeper by `ramp` below both faces.
+        let below =
+            surface.closest(point - (normals[0] + normals[1]) * (ramp / (1.0 + normals[0].dot(normals[1]))));
+        let third = below.normal - below.normal.dot(e) * across;
+        let free = (signed_distance - below.signed_distance) / ramp;
+        let (free, of_free) = growing(free, (self.scale * self.at.normal - third) / ramp);
+        let rising = normals.map(|n| n * n.dot(e).signum());
+        let flatter = if rising[0].dot(e) < rising[1].dot(e) { rising[0] } else { rising[1] };
+        let (steep, of_steep) = share_of_slope(e, flatter);
+        self.share = steep * end * free;
+        self.gradient = steep * (free * of_end + end * of_free);
+        self.turning = end * free * of_steep;
+    }
+}
+
+/// The share w of the crossing of an edge along a unit vector that rises over a face of that normal, and its
+/// derivative with a rotation of the edge.
+pub(in crate::contact) fn share_of_slope(edge: DVec3, normal: DVec3) -> (f64, DVec3) {
+    let range = SLOPES[1] - SLOPES[0];
+    growing((normal.dot(edge) - SLOPES[0]) / range, edge.cross(normal) / range)
+}
+
+/// A weight that grows from zero to one with a value, whose derivative is given, and its own derivative.
+fn growing(value: f64, derivative: DVec3) -> (f64, DVec3) {
+    let is_partial = value > 0.0 && value < 1.0;
+    (value.clamp(0.0, 1.0), if is_partial { derivative } else { DVec3::ZERO })
+}
