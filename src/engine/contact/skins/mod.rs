@@ -8,6 +8,8 @@ mod points;
 
 mod on_tool;
 
+mod onsets;
+
 mod displaced;
 
 mod near_skins;

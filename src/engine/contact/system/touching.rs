@@ -1,5 +1,7 @@
 //! A pair of bodies with a contact.
 
+use serde::{Deserialize, Serialize};
+
 use crate::contact::active::ContactNodes;
 use crate::contact::bodies::{MemberParticles, MotionBounds, NodeTurn};
 use crate::contact::particles::ParticleContact;
@@ -141,10 +143,12 @@ impl Touching {
             Self::Skins(contact) => &contact.passes.each_ref().map(|pass| &pass.histories),
         };
         let histories = histories.iter().map(|histories| histories.entries().to_vec()).collect();
-        (histories, self.patches().iter().map(Patch::saved).collect())
+        let onsets = if let Self::SkinOnTool(contact) = self { contact.onsets.saved() } else { Vec::new() };
+        Saved { histories, patches: self.patches().iter().map(Patch::saved).collect(), onsets }
     }
 
-    pub fn restore(&mut self, (histories, patches): Saved) -> bool {
+    /// Restores it; says whether it fits.
+    pub fn restore(&mut self, Saved { histories, patches, onsets }: Saved) -> bool {
         let own: &mut [&mut Histories] = match self {
             Self::Particles(contact) => &mut [&mut contact.contacts.histories],
             Self::Surface(contact) => &mut [&mut contact.contacts.histories],
@@ -155,6 +159,11 @@ impl Touching {
             return false;
         }
         own.iter_mut().zip(histories).for_each(|(own, entries)| own.set(entries));
+        if let Self::SkinOnTool(contact) = self
+            && !contact.onsets.restore(&onsets)
+        {
+            return false;
+        }
         let own: &mut [Patch] = match self {
             Self::SkinOnTool(contact) => std::slice::from_mut(&mut contact.patch),
             Self::Skins(contact) => &mut contact.patches,
@@ -165,5 +174,12 @@ impl Touching {
     }
 }
 
-/// Histories and the last places of skins.
-pub(super) type Saved = (Vec<Vec<(PairKey, History)>>, Vec<Vec<(u32, Last)>>);
+/// State of a pair in a checkpoint.
+#[derive(Serialize, Deserialize)]
+pub(in crate::contact) struct Saved {
+    histories: Vec<Vec<(PairKey, History)>>,
+    /// The last places of the vertices of skins.
+    patches: Vec<Vec<(u32, Last)>>,
+    /// Depths over which the springs of vertices on a tool begin, m.
+    onsets: Vec<(u32, f64)>,
+}
