@@ -238,11 +238,11 @@ fn is_held(touch: &Touch) -> bool {
 /// The force of a spring acts in the kicks around the end of a step, half a step each. In its first step a
 /// contact has acted since first contact, with half of that force on average; in its last it acts until
 /// separation. Without this share the energy of a contact would have an error of up to an eighth of `k (v
-/// dt)^2` at its beginning and at its end. Skins keep the depth over which a spring begins to its end, so that
-/// all forces of a contact are the gradient of one energy: with the way of its last step in that place, stacks
-/// of undamped sheets gained energy. The overlap of particles also follows their deformation, and they take
-/// the way of the last step. Rigid bodies take steps so short that it does not matter, and gain no energy by
-/// this estimate.
+/// dt)^2` at its beginning and at its end. Skins keep the depth over which a spring begins to its end, so
+/// that all forces of a contact are the gradient of one energy: with the way of its last step in that place,
+/// stacks of undamped sheets gained energy. The overlap of particles also follows their deformation, and they
+/// take the way of the last step. Rigid bodies take steps so short that it does not matter, and gain no
+/// energy by this estimate.
 #[inline]
 fn share_at_onset(touch: &Touch, onset: f64) -> f64 {
     let overlap = touch.overlap;
