@@ -52,11 +52,11 @@ impl Ellipsoid {
             let slope: f64 =
                 axes.clone().map(|k| 2.0 * share(u, k) / (u + excess(k)).max(f64::MIN_POSITIVE)).sum();
             let next = u + excess_of_sum / slope;
-            // `!(a > b)` also ends at NaN.
-            if !(next > u) {
+            if next > u {
+                u = next;
+            } else {
                 break;
             }
-            u = next;
         }
         let mut foot = DVec3::ZERO;
         axes.for_each(|k| foot[k] = at(u, k));
