@@ -2,9 +2,12 @@
 
 use std::path::Path;
 
+use glam::DVec3;
+
 use super::boolean::{Intersection, Union};
 use super::check::{Checked, ShapeCheck};
 use super::difference::DifferenceRegion;
+use super::ellipsoid::Ellipsoid;
 use super::error::{FillError, FillErrorKind};
 use super::region::Region;
 use super::shape::Shape;
@@ -44,7 +47,14 @@ impl Shape {
             Self::Scale { shape, by, about } => {
                 let (by, about) = check.scale(*by, *about)?;
                 let region = shape.region(dimension, folder, &check.field("shape"))?;
-                Box::new(Scaled { region, by, about, axes })
+                match shape.as_ref() {
+                    // The distance from an ellipsoid is exact, that of another stretched shape a lower bound.
+                    Self::Sphere { center, radius } if is_stretched(by, axes) => {
+                        let center = about + by * (center.0 - about);
+                        Box::new(Ellipsoid::new(center, by * *radius, axes))
+                    }
+                    _ => Box::new(Scaled { region, by, about, axes }),
+                }
             }
             single => check.single(single)?,
         })
@@ -91,7 +101,7 @@ impl Shape {
             Self::Scale { shape, by, about } => {
                 let (by, about) = check.scale(*by, *about)?;
                 let region = shape.surface(dimension, folder, &check.field("shape"))?;
-                if by.x != by.y || (axes == 3 && by.x != by.z) {
+                if is_stretched(by, axes) {
                     return none("the factors of the scaling are not equal");
                 }
                 Box::new(Scaled { region, by, about, axes })
@@ -99,4 +109,9 @@ impl Shape {
             single => check.single(single)?,
         })
     }
+}
+
+/// Whether scaling by these factors changes angles.
+fn is_stretched(by: DVec3, axes: usize) -> bool {
+    by.x != by.y || (axes == 3 && by.x != by.z)
 }

@@ -10,6 +10,7 @@ mod check;
 mod concentric;
 mod cylinder;
 mod difference;
+mod ellipsoid;
 mod error;
 mod facets;
 mod fill;

@@ -15,6 +15,7 @@ fn the_outermost_layer_is_half_a_spacing_from_any_boundary() {
     for (text, dimension, spacing) in [
         ("Difference(Box(min: (0, 0), max: (2, 1)), Sphere(center: (1, 0.5), radius: 0.25))", Two, 0.05),
         ("Sphere(center: (0.3, 0.1), radius: 0.5)", Two, 0.04),
+        ("Scale(shape: Sphere(center: (0, 0), radius: 1), by: (1, 0.6))", Two, 0.05),
         (inclined, Two, 0.05),
         (
             "Difference(Box(min: (0, 0, 0), max: (1, 1, 0.4)), Cylinder(from: (0.5, 0.5, -1), to: (0.5, 0.5, 1), radius: 0.25))",

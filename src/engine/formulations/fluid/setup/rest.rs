@@ -3,7 +3,8 @@
 //! A line from each particle against gravity, through its fluid and the fluids above it, ends at a free
 //! surface: `p = sum_k rho_k g l_k` with the lengths l_k in each fluid. Where the line ends at a wall or a
 //! body, the pressure is continued hydrostatically from neighbouring particles that have one; in a fluid
-//! without a free surface it is zero at the highest point.
+//! without a free surface it is zero at the highest point. Fluids that touch no wall and no body, alone or
+//! together, fall freely: their pressure is zero.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -21,6 +22,9 @@ const PRECISION: f64 = 1e-4;
 const ROUND_OFF: f64 = 1e-8;
 /// Distance beyond the boundary of a fluid at which is looked for what covers it, over the spacing.
 const BEYOND: f64 = 0.25;
+/// Distance of a particle from a wall, a body or another fluid below which its fluid touches it, over the
+/// spacing: particles begin half a spacing inside, and gaps narrower than two spacings cause a warning.
+const TOUCH: f64 = 2.5;
 
 /// A fluid as a line through it sees it.
 struct Layer {
@@ -52,9 +56,13 @@ pub fn pressures(
     if found.iter().flatten().any(Option::is_none) {
         rest.spread(&mut found, support, sim)?;
     }
-    let pressures = rest.layers.into_iter().zip(found).map(|(layer, found)| match layer.given {
-        Some(expression) => StartPressure::Given(expression),
-        None => StartPressure::AtRest(found.into_iter().map(|p| p.unwrap_or(0.0).max(0.0)).collect()),
+    let held = rest.held(sim);
+    let pressures = rest.layers.into_iter().zip(found).zip(held).map(|((layer, found), is_held)| {
+        let at_rest = |p: Option<f64>| if is_held { p.unwrap_or(0.0).max(0.0) } else { 0.0 };
+        match layer.given {
+            Some(expression) => StartPressure::Given(expression),
+            None => StartPressure::AtRest(found.into_iter().map(at_rest).collect()),
+        }
     });
     Ok(pressures.collect())
 }
@@ -72,6 +80,29 @@ impl RestLines {
         let layer =
             |(id, given)| Layer { id, region: region(id), density: sim.body(id).material.density, given };
         Self { covers, gravity: sim.gravity(), spacing, layers: fluids.into_iter().map(layer).collect() }
+    }
+
+    /// Whether each fluid touches a wall or a body, directly or by other fluids; so does one whose extent, or
+    /// that of something in the scene, is not known.
+    fn held(&self, sim: &SimBuilder<'_>) -> Vec<bool> {
+        let others = sim.bodies().iter().count() - self.layers.len();
+        let are_known = self.covers.len() == others && self.layers.iter().all(|layer| layer.region.is_some());
+        let touches = |k: usize, region: &dyn Region| {
+            let sites = &sim.body(self.layers[k].id).sites;
+            sites.par_iter().any(|site| region.distance(site.position) < TOUCH * self.spacing)
+        };
+        let by_cover = |k: usize| self.covers.iter().any(|cover| touches(k, cover.as_ref()));
+        let mut held: Vec<bool> = (0..self.layers.len()).map(|k| !are_known || by_cover(k)).collect();
+        for _ in 1..self.layers.len() {
+            for k in 0..self.layers.len() {
+                let by_fluid = |other: usize| {
+                    let region = self.layers[other].region.as_deref();
+                    other != k && held[other] && region.is_some_and(|region| touches(k, region))
+                };
+                held[k] = held[k] || (0..self.layers.len()).any(by_fluid);
+            }
+        }
+        held
     }
 
     /// Pressure of the particles of a fluid, where a line from them ends at a free surface, Pa.

@@ -474,3 +474,24 @@ fn a_turning_fluid_without_friction_is_warned_of_and_one_with_friction_is_not() 
     let sim = run(1e-3);
     assert!(warning(&sim, "in tension").is_none(), "{:?}", sim.warnings());
 }
+
+#[test]
+fn sound_about_zero_pressure_in_a_closed_tube_is_warned_of_and_about_a_pressure_is_not() {
+    // The lowest mode of a closed tube, half of whose time every half of it is in tension.
+    let told = |pressure: f64| {
+        let mut sim = simulation(&format!(
+            r#"(dimension: Two, domain: (min: (-0.5, 0), max: (1.5, 0.2), periodic: [Y]),
+                materials: {{"liquid": Fluid(density: 1000.0, sound_speed: 10.0)}},
+                bodies: [
+                    (name: "liquid", material: "liquid", shape: Box(min: (0, 0), max: (1, 0.2)), spacing: 0.025, formulation: Fluid(pressure: {pressure:?})),
+                    (name: "ends", material: "wall", spacing: 0.025, formulation: Wall(suction: true),
+                     shape: Union([Box(min: (-0.1, 0), max: (0, 0.2)), Box(min: (1, 0), max: (1.1, 0.2))])),
+                ],
+                conditions: [InitialVelocity(on: Select(body: "liquid"), value: ("0.02*sin(pi*x)", 0.0))], record: (every: 0.06), time: (end: 0.8))"#
+        ));
+        sim.run(|_| true).expect("a run");
+        warning(&sim, "has been in tension").is_some()
+    };
+    assert!(told(0.0));
+    assert!(!told(600.0));
+}

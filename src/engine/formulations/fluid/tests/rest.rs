@@ -79,3 +79,24 @@ fn water_below_air_stays_at_rest() {
         assert!(fastest < 0.3, "{body}: {fastest}");
     }
 }
+
+#[test]
+fn what_falls_freely_has_no_pressure() {
+    let drop = |bottom: f64| {
+        format!(
+            r#"(name: "drop", material: "oil", shape: Sphere(center: (0.4, {}), radius: 0.1), spacing: {SPACING}, formulation: Fluid),"#,
+            bottom + 0.1
+        )
+    };
+    let pool = "Box(min: (0, 0), max: (0.8, 0.1))";
+    let mut sim = water(pool, &drop(0.3));
+    let falls = |sim: &Simulation| column::<Pressure>(sim, 2).iter().map(|p| p.0.abs()).fold(0.0, f64::max);
+    assert_eq!(falls(&sim), 0.0);
+    assert!(error(&sim, 0, |_, y| 9810.0 * (0.1 - y)) < 1e-3 * 9810.0 * SPACING);
+    for _ in 0..20 {
+        sim.step().expect("a step");
+    }
+    assert!(falls(&sim) < 1e-6 * 9810.0, "{}", falls(&sim));
+    // Oil that rests on the water has the pressure of its weight.
+    assert!(falls(&water(pool, &drop(0.1))) > 0.5 * 800.0 * 9.81 * 0.2);
+}

@@ -2,10 +2,11 @@
 //!
 //! In breaking and falling water, stabilizers dissipate energy that a real flow would lose too. A fluid
 //! without a free surface, and one without walls, lose nothing without friction: a loss there is an error.
-//! Particles that move past stepped walls, or from one lattice arrangement into another, are disturbed, and
-//! stabilizers dissipate the energy of the disturbance.
+//! Particles that move past stepped walls, that are in tension, or that go from one lattice arrangement into
+//! another, are disturbed, and stabilizers dissipate the energy of the disturbance.
 
 use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud};
+use crate::formulations::fluid::lanes::FlowParticle;
 use crate::notation::quantity;
 use crate::removal::REMOVED_ENERGY;
 use crate::schedule::{Account, AccountKind, Step};
@@ -35,8 +36,16 @@ pub fn look(is_told: &mut bool, cloud: &FlowCloud, scratch: &mut Vec<Option<f64>
     }
     let Some((account, _)) = taken().max_by(|a, b| a.1.total_cmp(&b.1)) else { return };
     *is_told = true;
+    let lowest = cloud.records()[..cloud.fluid].iter().map(FlowParticle::pressure).fold(0.0, f64::min);
+    let tension = match is_bounded && lowest < 0.0 {
+        true => format!(
+            "some are in tension, down to {}: a pressure at the start that keeps it above zero, `Fluid(pressure: ...)`; ",
+            quantity(lowest, "Pa")
+        ),
+        false => String::new(),
+    };
     step.warnings.push(format!(
-        "{} of the motion of {} has been lost to `{}` by {}, {:.0} % of the largest energy of the run, where there is nothing to lose it by but friction: its particles shake; {}take more particles",
+        "{} of the motion of {} has been lost to `{}` by {}, {:.0} % of the largest energy of the run, where there is nothing to lose it by but friction: its particles shake; {tension}{}take more particles",
         quantity(total, "J"),
         super::closed::named(cloud, step),
         account.name,

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::closed::is_closed;
 use crate::formulations::fluid::cloud::{FlowCloud, Group};
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::notation::quantity;
@@ -13,7 +14,8 @@ use crate::schedule::Step;
 const TENSION: f64 = 0.1;
 /// Share of the particles in tension that is worth a warning.
 const SHARE: f64 = 0.25;
-/// Frames in sequence for which it has to last: sound passes, an acceleration does not.
+/// Frames in sequence for which it has to last: sound passes, an acceleration does not. Between boundaries
+/// with suction they need not be in sequence: nothing relieves a fluid that oscillates about zero pressure.
 const FRAMES: u32 = 3;
 /// The plugin that damps the noise.
 const REMEDY: &str = "artificial_viscosity";
@@ -21,7 +23,7 @@ const REMEDY: &str = "artificial_viscosity";
 /// Watches the pressure of every fluid without viscosity.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct TensionWatch {
-    /// Frames in sequence for which each group was in tension; none for fluids with friction.
+    /// Frames for which each group was in tension; none for fluids with friction.
     frames: Vec<Option<u32>>,
 }
 
@@ -49,14 +51,18 @@ impl TensionWatch {
     }
 
     /// Checks all fluids.
-    pub fn look(&mut self, cloud: &FlowCloud, step: &mut Step<'_>) {
+    pub fn look(&mut self, cloud: &FlowCloud, scratch: &mut Vec<Option<f64>>, step: &mut Step<'_>) {
         for (group, frames) in cloud.groups.iter().zip(&mut self.frames) {
             let Some(count) = frames else { continue };
             let records = &cloud.records()[group.cloud.clone()];
             let pressures = || records.iter().filter(|row| row.volume() > 0.0).map(FlowParticle::pressure);
             let largest = pressures().map(f64::abs).fold(0.0, f64::max);
             let [all, tense] = count_in_tension(records, TENSION * largest);
-            *count = if tense as f64 > SHARE * all as f64 { *count + 1 } else { 0 };
+            if tense as f64 > SHARE * all as f64 {
+                *count += 1;
+            } else if *count > 0 && !(cloud.is_confined() && is_closed(cloud, scratch)) {
+                *count = 0;
+            }
             if *count < FRAMES {
                 continue;
             }

@@ -122,7 +122,7 @@ impl Run for FlowWatch {
             self.filling.look(&cloud, &mut self.scratch, step);
             self.closed.look(at_end, &cloud, &mut self.scratch, step);
             self.unevenness.look(&cloud, &mut self.friction, step);
-            self.tension.look(&cloud, step);
+            self.tension.look(&cloud, &mut self.scratch, step);
         }
         if at_end {
             stabilized::look(&mut self.is_stabilized, &cloud, &mut self.scratch, step);
