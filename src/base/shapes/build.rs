@@ -7,10 +7,10 @@ use glam::DVec3;
 use super::boolean::{Intersection, Union};
 use super::check::{Checked, ShapeCheck};
 use super::difference::DifferenceRegion;
-use super::ellipsoid::Ellipsoid;
 use super::error::{FillError, FillErrorKind};
 use super::region::Region;
 use super::shape::Shape;
+use super::stretched_sphere::StretchedSphere;
 use super::surface::Surface;
 use super::transform::{Rotated, Scaled, Translated};
 use crate::space::Dimension;
@@ -51,7 +51,7 @@ impl Shape {
                     // The distance from an ellipsoid is exact, that of another stretched shape a lower bound.
                     Self::Sphere { center, radius } if is_stretched(by, axes) => {
                         let center = about + by * (center.0 - about);
-                        Box::new(Ellipsoid::new(center, by * *radius, axes))
+                        Box::new(StretchedSphere::new(center, by * *radius, axes))
                     }
                     _ => Box::new(Scaled { region, by, about, axes }),
                 }

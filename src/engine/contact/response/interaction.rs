@@ -79,6 +79,11 @@ impl Interaction {
         self.friction == 0.0 && self.damping_ratio == 0.0
     }
 
+    /// Whether springs of skins end as they began: not with a dashpot, which makes them slower.
+    pub fn keeps_onsets(&self) -> bool {
+        self.damping_ratio == 0.0
+    }
+
     /// The force; `inverse_mass` is that of both sides together along a direction, 1/kg.
     pub fn respond(
         &self,
@@ -238,11 +243,11 @@ fn is_held(touch: &Touch) -> bool {
 /// The force of a spring acts in the kicks around the end of a step, half a step each. In its first step a
 /// contact has acted since first contact, with half of that force on average; in its last it acts until
 /// separation. Without this share the energy of a contact would have an error of up to an eighth of `k (v
-/// dt)^2` at its beginning and at its end. Skins keep the depth over which a spring begins to its end, so
-/// that all forces of a contact are the gradient of one energy: with the way of its last step in that place,
-/// stacks of undamped sheets gained energy. The overlap of particles also follows their deformation, and they
-/// take the way of the last step. Rigid bodies take steps so short that it does not matter, and gain no
-/// energy by this estimate.
+/// dt)^2` at its beginning and at its end. Skins without a dashpot keep the depth over which a spring begins
+/// to its end, so that all forces of a contact are the gradient of one energy: with the way of its last step
+/// in that place, stacks of undamped sheets gained energy. A dashpot makes the end slower than the beginning,
+/// and the overlap of particles also follows their deformation: these take the way of the last step. Rigid
+/// bodies take steps so short that it does not matter, and gain no energy by this estimate.
 #[inline]
 fn share_at_onset(touch: &Touch, onset: f64) -> f64 {
     let overlap = touch.overlap;

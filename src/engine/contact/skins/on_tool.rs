@@ -173,7 +173,9 @@ impl SkinOnTool {
                 *seen = on.look_at(vertex.place, vertex.velocity);
             }
         });
-        onsets.keep(patch.vertex_numbers(), seen);
+        if interaction.keeps_onsets() {
+            onsets.keep(patch.vertex_numbers(), seen);
+        }
     }
 
     /// Computes the contact forces of the points of every facet near the tool on its vertices.
@@ -272,7 +274,7 @@ impl SkinOnTool {
                 arms: [DVec3::ZERO; 2],
                 velocity,
                 acceleration: DVec3::ZERO,
-                keeps_onset: true,
+                keeps_onset: interaction.keeps_onsets(),
             };
             let mobility = vertex.mobility / pressed.area;
             let inverse_mass = |n: DVec3| mobility.dot(n * n) + tool.inverse_mass_at(place(vertex), n);

@@ -267,12 +267,12 @@ impl<'a> PressPass<'a> {
         ToolView { distance: nearest.signed_distance, normal, onset: 0.0 }
     }
 
-    /// The same, where a spring begins in this step, at a place that moves at `velocity`, m/s.
+    /// The same, where a spring begins or ends in this step, at a place that moves at `velocity`, m/s.
     #[inline]
     pub fn look_at(&self, x: DVec3, velocity: DVec3) -> ToolView {
         let seen = self.look(x);
         let approach = (self.tool.velocity_at(self.sides.near(x, self.tool)) - velocity).dot(seen.normal);
-        ToolView { onset: (approach * self.dt).max(0.0), ..seen }
+        ToolView { onset: (approach * self.dt).abs(), ..seen }
     }
 }
 

@@ -135,7 +135,7 @@ impl Touching {
     }
 
     /// State in a checkpoint.
-    pub fn saved(&self) -> Saved {
+    pub fn saved(&self) -> SavedContact {
         let histories: &[&Histories] = match self {
             Self::Particles(contact) => &[&contact.contacts.histories],
             Self::Surface(contact) => &[&contact.contacts.histories],
@@ -144,11 +144,11 @@ impl Touching {
         };
         let histories = histories.iter().map(|histories| histories.entries().to_vec()).collect();
         let onsets = if let Self::SkinOnTool(contact) = self { contact.onsets.saved() } else { Vec::new() };
-        Saved { histories, patches: self.patches().iter().map(Patch::saved).collect(), onsets }
+        SavedContact { histories, patches: self.patches().iter().map(Patch::saved).collect(), onsets }
     }
 
     /// Restores it; says whether it fits.
-    pub fn restore(&mut self, Saved { histories, patches, onsets }: Saved) -> bool {
+    pub fn restore(&mut self, SavedContact { histories, patches, onsets }: SavedContact) -> bool {
         let own: &mut [&mut Histories] = match self {
             Self::Particles(contact) => &mut [&mut contact.contacts.histories],
             Self::Surface(contact) => &mut [&mut contact.contacts.histories],
@@ -176,7 +176,7 @@ impl Touching {
 
 /// State of a pair in a checkpoint.
 #[derive(Serialize, Deserialize)]
-pub(in crate::contact) struct Saved {
+pub(in crate::contact) struct SavedContact {
     histories: Vec<Vec<(PairKey, History)>>,
     /// The last places of the vertices of skins.
     patches: Vec<Vec<(u32, Last)>>,

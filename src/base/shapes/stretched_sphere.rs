@@ -11,14 +11,14 @@ use super::region::{Aabb, Region};
 const STEPS: usize = 100;
 
 /// An ellipsoid along the axes; in two dimensions an ellipse.
-pub(super) struct Ellipsoid {
+pub(super) struct StretchedSphere {
     center: DVec3,
     /// Half the lengths along the axes \[m\], zero along z in two dimensions.
     semi_axes: DVec3,
     axes: usize,
 }
 
-impl Ellipsoid {
+impl StretchedSphere {
     pub fn new(center: DVec3, semi_axes: DVec3, axes: usize) -> Self {
         let semi_axes = if axes == 3 { semi_axes } else { semi_axes.with_z(0.0) };
         Self { center, semi_axes, axes }
@@ -64,7 +64,7 @@ impl Ellipsoid {
     }
 }
 
-impl Region for Ellipsoid {
+impl Region for StretchedSphere {
     fn distance(&self, point: DVec3) -> f64 {
         let arm = point - self.center;
         let outside = (0..self.axes).map(|k| (arm[k] / self.semi_axes[k]).powi(2)).sum::<f64>() - 1.0;
@@ -88,7 +88,7 @@ mod tests {
     use super::*;
 
     /// The distance from points of the surface of an ellipse, found by search.
-    fn searched(ellipse: &Ellipsoid, point: DVec3) -> f64 {
+    fn searched(ellipse: &StretchedSphere, point: DVec3) -> f64 {
         let angles = (0..40_000).map(|i| 2.0 * PI * f64::from(i) / 40_000.0);
         let on = angles
             .map(|angle| ellipse.center + ellipse.semi_axes * DVec3::new(angle.cos(), angle.sin(), 0.0));
@@ -97,7 +97,7 @@ mod tests {
 
     #[test]
     fn distances_are_those_to_the_nearest_point_of_an_ellipse() {
-        let ellipse = Ellipsoid::new(DVec3::new(0.3, -0.2, 0.0), DVec3::new(1.0, 0.4, 1.0), 2);
+        let ellipse = StretchedSphere::new(DVec3::new(0.3, -0.2, 0.0), DVec3::new(1.0, 0.4, 1.0), 2);
         for (x, y) in (-6..7).flat_map(|i| (-6..7).map(move |j| (0.23 * f64::from(i), 0.11 * f64::from(j)))) {
             let point = ellipse.center + DVec3::new(x, y, 0.0);
             let (found, searched) = (ellipse.distance(point), searched(&ellipse, point));
@@ -109,8 +109,8 @@ mod tests {
     #[test]
     fn a_spheroid_has_the_distances_of_the_ellipse_that_turns() {
         for (across, along) in [(0.5, 1.0), (1.0, 0.5)] {
-            let spheroid = Ellipsoid::new(DVec3::ZERO, DVec3::new(across, along, across), 3);
-            let ellipse = Ellipsoid::new(DVec3::ZERO, DVec3::new(across, along, 1.0), 2);
+            let spheroid = StretchedSphere::new(DVec3::ZERO, DVec3::new(across, along, across), 3);
+            let ellipse = StretchedSphere::new(DVec3::ZERO, DVec3::new(across, along, 1.0), 2);
             for n in 0..64 {
                 let point = 0.4 * DVec3::new(f64::from(n % 4), f64::from(n / 4 % 4), f64::from(n / 16));
                 let flat = DVec3::new(point.x.hypot(point.z), point.y, 0.0);
@@ -121,7 +121,7 @@ mod tests {
 
     #[test]
     fn the_end_of_an_axis_has_the_exact_distance() {
-        let ellipse = Ellipsoid::new(DVec3::ZERO, DVec3::new(1.0, 0.6, 1.0), 2);
+        let ellipse = StretchedSphere::new(DVec3::ZERO, DVec3::new(1.0, 0.6, 1.0), 2);
         for (point, distance) in
             [((0.95, 0.0), -0.05), ((1.3, 0.0), 0.3), ((0.0, 0.0), -0.6), ((1e-30, 0.7), 0.1)]
         {
