@@ -44,13 +44,13 @@ pub(in crate::contact) struct Crossing {
 }
 
 /// A point of the edge, and the surface beside it.
-struct Side {
+struct EdgePoint {
     x: DVec3,
     normal: DVec3,
     distance: f64,
 }
 
-impl Side {
+impl EdgePoint {
     fn new(surface: &dyn Surface, x: DVec3) -> Self {
         let SurfacePoint { normal, signed_distance, .. } = surface.closest(x);
         Self { x, normal, distance: signed_distance }
@@ -62,13 +62,13 @@ impl Crossing {
     pub fn of(surface: &dyn Surface, ends: [DVec3; 2], size: f64) -> Option<Self> {
         let length = ends[0].distance(ends[1]);
         let e = (ends[1] - ends[0]) / length;
-        let [mut before, mut after] = ends.map(|end| Side::new(surface, end));
+        let [mut before, mut after] = ends.map(|end| EdgePoint::new(surface, end));
         if before.normal.dot(e) >= 0.0 || after.normal.dot(e) <= 0.0 {
             return None;
         }
         let mut half = 0.5 * length;
         for _ in 0..BISECTIONS {
-            let middle = Side::new(surface, 0.5 * (before.x + after.x));
+            let middle = EdgePoint::new(surface, 0.5 * (before.x + after.x));
             // A distance changes by as much as the way at most.
             if middle.distance - half > size {
                 return None;
