@@ -37,7 +37,7 @@ pub struct Probe {
     #[serde(default)]
     pub relative_to: Option<RelativeTo>,
     /// Whether there may be no body at the point at the start: the probe shows NaN until there is one.
-    /// Otherwise this is an error.
+    /// Otherwise this is an error. A probe that has found nothing until the end causes a warning without it.
     #[serde(default)]
     pub may_be_empty: bool,
     /// Whether each sample is the mean over all steps since the last sample, instead of the value at its

@@ -101,7 +101,7 @@ impl Simulation {
         }
         let of = |name: &str| {
             format!(
-                "probe `{name}` has found nothing in any sample: is it where no particle comes? `may_be_empty: true` if that is meant"
+                "probe `{name}` has found nothing in any sample: is it where no particle comes, or does a sensor face into its wall? `may_be_empty: true` if that is meant"
             )
         };
         let texts: Vec<String> =

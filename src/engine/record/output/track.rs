@@ -72,7 +72,8 @@ impl Track {
     /// Whether it has measured, and found nothing in any sample, which the user does not expect.
     pub fn has_found_nothing(&self) -> bool {
         let extremes = &self.table.extremes;
-        let is_empty = !extremes.is_empty() && extremes.iter().all(|extreme| extreme.min.is_nan());
+        let mut ends = extremes.iter().flat_map(|extreme| [extreme.min, extreme.max]);
+        let is_empty = !extremes.is_empty() && ends.all(|end| self.gauge.is_of_nothing(end));
         !self.may_be_empty && self.last.is_some() && is_empty
     }
 

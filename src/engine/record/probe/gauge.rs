@@ -47,6 +47,12 @@ impl Gauge {
         }
     }
 
+    /// Whether a number is that of nothing to measure.
+    pub fn is_of_nothing(&self, number: f64) -> bool {
+        let known = if let Self::Measure(gauge) = self { gauge.of_nothing() } else { None };
+        number.is_nan() || known == Some(number)
+    }
+
     /// Measures; nothing for energies.
     ///
     /// # Errors

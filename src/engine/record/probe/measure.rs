@@ -8,6 +8,11 @@ pub trait Measure: Send + Sync {
     /// Name and unit of each number.
     fn columns(&self) -> Vec<(String, &'static str)>;
 
+    /// What all numbers are where there is nothing to measure, if that is not NaN.
+    fn of_nothing(&self) -> Option<f64> {
+        None
+    }
+
     /// Names of the particle columns that it reads.
     fn needs(&self) -> Vec<&'static str>;
 

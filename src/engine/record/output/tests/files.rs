@@ -139,7 +139,7 @@ fn a_probe_that_finds_nothing_in_any_sample_is_warned_of() {
         let text = format!(
             r#"(dimension: Two, materials: {{"water": Fluid(density: 1000.0, sound_speed: 20.0)}},
                 bodies: [(name: "water", material: "water", shape: Box(min: (0, 0), max: (0.1, 0.1)), spacing: 0.02, formulation: Fluid)],
-                probes: [Probe(name: "p", {probe}, quantity: Field("pressure"))], time: (end: 0.001))"#
+                probes: [Probe(name: "p", {probe})], time: (end: 0.001))"#
         );
         let warnings = run(built(&parse(Source::new("pond.ron", text)).unwrap(), folder.path()))
             .finish()
@@ -147,9 +147,23 @@ fn a_probe_that_finds_nothing_in_any_sample_is_warned_of() {
             .warnings;
         warnings.into_iter().filter(|text| text.contains("probe `p` has found nothing")).count()
     };
-    assert_eq!(warnings("at: (0.05, 0.9)"), 1);
-    assert_eq!(warnings("at: (0.05, 0.9), may_be_empty: true"), 0);
-    assert_eq!(warnings("at: (0.05, 0.05)"), 0);
+    let quantities = [
+        r#"Field("pressure")"#,
+        "WaterLevel(along: (0, 1))",
+        "PressureSensor(normal: (0, 1))",
+        "Flux(normal: (0, 1), within: Box(min: (0, 0), max: (0.1, 2)))",
+    ];
+    for quantity in quantities {
+        assert_eq!(warnings(&format!("at: (0.05, 0.9), quantity: {quantity}")), 1, "{quantity}");
+        assert_eq!(
+            warnings(&format!("at: (0.05, 0.9), may_be_empty: true, quantity: {quantity}")),
+            0,
+            "{quantity}"
+        );
+    }
+    for quantity in &quantities[..2] {
+        assert_eq!(warnings(&format!("at: (0.05, 0.05), quantity: {quantity}")), 0, "{quantity}");
+    }
 }
 
 #[test]

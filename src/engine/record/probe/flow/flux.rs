@@ -29,6 +29,10 @@ impl Measure for FluxGauge {
         vec![("flux".to_owned(), "m3/s")]
     }
 
+    fn of_nothing(&self) -> Option<f64> {
+        Some(0.0)
+    }
+
     fn needs(&self) -> Vec<&'static str> {
         vec![Position::NAME, Velocity::NAME]
     }

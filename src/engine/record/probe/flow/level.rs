@@ -36,6 +36,10 @@ impl Measure for LevelGauge {
         vec![("level".to_owned(), "m"), ("wet".to_owned(), "m")]
     }
 
+    fn of_nothing(&self) -> Option<f64> {
+        Some(0.0)
+    }
+
     fn needs(&self) -> Vec<&'static str> {
         vec![Position::NAME]
     }

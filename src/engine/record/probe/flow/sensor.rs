@@ -117,6 +117,10 @@ impl Measure for SensorGauge {
         vec![("pressure".to_owned(), "Pa")]
     }
 
+    fn of_nothing(&self) -> Option<f64> {
+        Some(0.0)
+    }
+
     fn needs(&self) -> Vec<&'static str> {
         vec![Position::NAME]
     }
