@@ -92,7 +92,6 @@ impl ContactPairs<'_> {
             arms: near.arms,
             velocity: self.velocity(of, near.arms),
             acceleration: DVec3::ZERO,
-            keeps_onset: false,
         };
         let inverse_mass = |n: DVec3| (mobility[0] + mobility[1]).dot(n * n);
         let response = interaction.respond(&state, inverse_mass, *dt, before);
@@ -128,7 +127,6 @@ impl ContactPairs<'_> {
                 arms: history.arms,
                 velocity: velocity(),
                 acceleration: DVec3::ZERO,
-                keeps_onset: false,
             };
             energies.removed += share * self.interaction.held(&state, self.dt, history);
         }

@@ -18,8 +18,6 @@ pub(in crate::contact) struct History {
     pub dashpot: DVec3,
     /// Depth of the overlap, m; zero where there was none.
     pub overlap: f64,
-    /// Depth over which the spring begins, m: the way of the sides in the step in which they met.
-    pub onset: f64,
     /// How much deeper the sides overlap, m: what took over from other springs begins with the energy of
     /// these.
     pub offset: f64,
@@ -38,11 +36,6 @@ impl History {
     /// A contact of that overlap, m, that takes over from other springs with a part of it.
     pub fn begun(overlap: f64, part: f64) -> Self {
         Self { offset: (1.0 - part) * overlap, ..Self::default() }
-    }
-
-    /// Depth over which the spring begins, m; of a contact that was not there the way of the step.
-    pub fn onset_or(&self, way: f64) -> f64 {
-        if self.is_none() { way.max(0.0) } else { self.onset }
     }
 
     /// Whether the contact was not there.

@@ -45,8 +45,6 @@ pub(in crate::contact) struct ContactState {
     /// Acceleration there of the first side relative to the second by all forces of the last step, m/s2: of
     /// rigid bodies; the forces on particles are taken to be in equilibrium.
     pub acceleration: DVec3,
-    /// Whether the spring ends as it has begun.
-    pub keeps_onset: bool,
 }
 
 /// Force and stiffness of a contact.
@@ -79,11 +77,6 @@ impl Interaction {
         self.friction == 0.0 && self.damping_ratio == 0.0
     }
 
-    /// Whether springs of skins end as they began: not with a dashpot, which makes them slower.
-    pub fn keeps_onsets(&self) -> bool {
-        self.damping_ratio == 0.0
-    }
-
     /// The force; `inverse_mass` is that of both sides together along a direction, 1/kg.
     pub fn respond(
         &self,
@@ -96,15 +89,8 @@ impl Interaction {
         let touch = Touch { overlap: (touch.overlap - before.offset).max(0.0), ..touch };
         let mut spring = self.law.at(&touch).along(scale).scaled(area);
         let approach = -velocity.dot(normal);
-        let onset = if before.is_none() || state.keeps_onset {
-            before.onset_or(scale * approach * dt)
-        } else {
-            before.overlap - touch.overlap
-        };
-        spring.force *= share_at_onset(&touch, onset);
-        let mut response = self.beside(spring, &ContactState { touch, ..*state }, inverse_mass, dt, before);
-        response.history.onset = onset;
-        response
+        spring.force *= share_of_step(&touch, scale * approach * dt, before);
+        self.beside(spring, &ContactState { touch, ..*state }, inverse_mass, dt, before)
     }
 
     /// The spring, of an area over that for which the law holds, where nothing but the overlap counts; the
@@ -113,11 +99,10 @@ impl Interaction {
     pub fn elastic(&self, touch: &Touch, area: f64, way: f64, before: &History) -> (Spring, History) {
         let touch = Touch { overlap: (touch.overlap - before.offset).max(0.0), ..*touch };
         let mut spring = self.law.at(&touch).scaled(area);
-        let onset = before.onset_or(way);
-        spring.force *= share_at_onset(&touch, onset);
+        spring.force = (spring.force * share_of_step(&touch, way, before)).max(0.0);
         let stiffness = self.tangential * spring.stiffness;
         let (overlap, offset, pressure) = (touch.overlap, before.offset, spring.force);
-        (spring, History { stiffness, overlap, onset, offset, pressure, ..History::default() })
+        (spring, History { stiffness, overlap, offset, pressure, ..History::default() })
     }
 
     /// Energy at the end of the last step of a contact that ends because a particle is removed, and the work
@@ -128,12 +113,13 @@ impl Interaction {
         self.law.at(&touch).energy - 0.5 * dt * force * state.normal.dot(state.velocity)
     }
 
-    /// The spring of a point of a surface without history that begins over a depth, m, for an area over that
-    /// for which the law holds.
+    /// The spring of a point of a surface without history, for an area over that for which the law holds: its
+    /// overlaps in the last and in the next step follow from its speed of approach, m/s.
     #[inline]
-    pub fn spring(&self, touch: &Touch, area: f64, onset: f64) -> Spring {
+    pub fn spring(&self, touch: &Touch, area: f64, approach: f64, dt: f64) -> Spring {
         let mut spring = self.law.at(touch).scaled(area);
-        spring.force *= share_at_onset(touch, onset);
+        let way = approach.abs() * dt;
+        spring.force *= share_of_way(touch, way);
         spring
     }
 
@@ -169,7 +155,6 @@ impl Interaction {
                 stiffness,
                 dashpot,
                 overlap,
-                onset: before.onset,
                 offset: before.offset,
                 arms,
                 pressure,
@@ -243,15 +228,17 @@ fn is_held(touch: &Touch) -> bool {
 /// The force of a spring acts in the kicks around the end of a step, half a step each. In its first step a
 /// contact has acted since first contact, with half of that force on average; in its last it acts until
 /// separation. Without this share the energy of a contact would have an error of up to an eighth of `k (v
-/// dt)^2` at its beginning and at its end. Skins without a dashpot keep the depth over which a spring begins
-/// to its end, so that all forces of a contact are the gradient of one energy: with the way of its last step
-/// in that place, stacks of undamped sheets gained energy. A dashpot makes the end slower than the beginning,
-/// and the overlap of particles also follows their deformation: these take the way of the last step. Rigid
-/// bodies take steps so short that it does not matter, and gain no energy by this estimate.
+/// dt)^2` at its beginning and at its end. Rigid bodies take steps so short that it does not matter, and gain
+/// no energy by this estimate.
+fn share_of_step(touch: &Touch, approach: f64, before: &History) -> f64 {
+    share_of_way(touch, if before.is_none() { approach } else { before.overlap - touch.overlap })
+}
+
+/// The same, for an overlap that began or ends within the displacement of a step, m.
 #[inline]
-fn share_at_onset(touch: &Touch, onset: f64) -> f64 {
+fn share_of_way(touch: &Touch, way: f64) -> f64 {
     let overlap = touch.overlap;
-    if onset > overlap && is_held(touch) { 0.5 + 0.5 * overlap / onset } else { 1.0 }
+    if way > overlap && is_held(touch) { 0.5 + 0.5 * overlap / way } else { 1.0 }
 }
 
 impl Losses {

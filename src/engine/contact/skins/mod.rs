@@ -8,8 +8,6 @@ mod points;
 
 mod on_tool;
 
-mod onsets;
-
 mod displaced;
 
 mod near_skins;

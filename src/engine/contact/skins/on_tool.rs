@@ -10,7 +10,6 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::near_tool::NearTool;
-use super::onsets::Onsets;
 use super::points::{Extremes, FacetPart, Points, PressPass, ToolView, VertexPress, touch_of};
 use crate::contact::active::ActiveContacts;
 use crate::contact::bodies::{ContactSides, MotionBounds, failed};
@@ -35,7 +34,6 @@ pub(in crate::contact) struct SkinOnTool {
     /// Position of the tool relative to every vertex of the patch, and the points of every facet near it that
     /// may touch.
     seen: Vec<ToolView>,
-    pub onsets: Onsets,
     reached: Vec<FacetPart>,
     /// Forces on the vertices of every facet near the tool, and on every vertex of the patch.
     on_facets: Vec<[VertexPress; 3]>,
@@ -87,7 +85,6 @@ impl SkinOnTool {
             points: Points::new(skin.facets.axes),
             near: NearTool::new(&skin),
             seen: Vec::with_capacity(vertices),
-            onsets: Onsets::new(vertices),
             reached: Vec::with_capacity(facets),
             on_facets: Vec::with_capacity(facets),
             pressed: Vec::with_capacity(vertices),
@@ -164,18 +161,15 @@ impl SkinOnTool {
 
     /// Computes the position of the tool relative to the vertices.
     fn look(&mut self, tool: &RigidBody, dt: f64) {
-        let Self { interaction, patch, sides, seen, onsets, .. } = self;
+        let Self { interaction, patch, sides, seen, .. } = self;
         let (on, vertices) = (PressPass::new(interaction, patch, sides, tool, dt), patch.vertices());
         seen.resize(vertices.len(), ToolView::default());
         let rows = (&mut seen[..], vertices);
         for_each_block(rows, &mut Vec::new(), &|_, (seen, vertices): (&mut [ToolView], &[Vertex])| {
             for (seen, vertex) in seen.iter_mut().zip(vertices) {
-                *seen = on.look_at(vertex.place, vertex.velocity);
+                *seen = on.look(vertex.place, vertex.velocity);
             }
         });
-        if interaction.keeps_onsets() {
-            onsets.keep(patch.vertex_numbers(), seen);
-        }
     }
 
     /// Computes the contact forces of the points of every facet near the tool on its vertices.
@@ -274,7 +268,6 @@ impl SkinOnTool {
                 arms: [DVec3::ZERO; 2],
                 velocity,
                 acceleration: DVec3::ZERO,
-                keeps_onset: interaction.keeps_onsets(),
             };
             let mobility = vertex.mobility / pressed.area;
             let inverse_mass = |n: DVec3| mobility.dot(n * n) + tool.inverse_mass_at(place(vertex), n);

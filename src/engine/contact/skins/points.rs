@@ -36,8 +36,8 @@ pub(super) struct ToolView {
     pub distance: f64,
     /// Outward normal of the tool.
     pub normal: DVec3,
-    /// Depth over which the spring begins, m: the way along the normal in the step of first contact.
-    pub onset: f64,
+    /// Speed at which the vertex approaches along it, m/s.
+    pub approach: f64,
 }
 
 /// Which points of a facet may touch.
@@ -177,9 +177,10 @@ impl Points {
         for point in 0..rule.len() {
             let shares = rule.shares(point);
             let [p, q, r] = shares;
-            let onset = p * seen[0].onset + q * seen[1].onset + r * seen[2].onset;
-            let place = p * a.place + q * b.place + r * c.place;
-            let seen = ToolView { onset, ..on.look(place) };
+            let seen = on.look(
+                p * a.place + q * b.place + r * c.place,
+                p * a.velocity + q * b.velocity + r * c.velocity,
+            );
             if seen.distance >= 0.0 {
                 extremes.gap.add_length(seen.distance);
             } else if seen.distance < 0.0 {
@@ -209,11 +210,11 @@ impl Points {
             let shares = rule.shares(point);
             let [p, q, r] = shares;
             let distance = p * a.distance + q * b.distance + r * c.distance;
-            let onset = p * a.onset + q * b.onset + r * c.onset;
+            let approach = p * a.approach + q * b.approach + r * c.approach;
             if distance.is_nan() {
                 continue;
             }
-            let spring = on.spring(&ToolView { distance, normal, onset }, area, extremes);
+            let spring = on.spring(&ToolView { distance, normal, approach }, area, extremes);
             for (on_vertex, share) in pressed.iter_mut().zip(shares) {
                 on_vertex.spring.force += share * spring.force;
                 on_vertex.spring.stiffness += share * spring.stiffness;
@@ -254,25 +255,18 @@ impl<'a> PressPass<'a> {
     #[inline]
     pub fn spring(&self, seen: &ToolView, area: f64, extremes: &mut Extremes) -> Spring {
         let touch = Touch { overlap: -seen.distance, ..self.touch };
-        let spring = self.interaction.spring(&touch, area / self.usual, seen.onset);
+        let spring = self.interaction.spring(&touch, area / self.usual, seen.approach, self.dt);
         extremes.stiffest.add(&Maximum(spring.stiffness / area));
         spring
     }
 
-    /// Position of the tool relative to a place, where a spring has begun long ago.
-    #[inline]
-    pub fn look(&self, x: DVec3) -> ToolView {
+    /// Position of the tool relative to a place that moves at `velocity`, m/s.
+    pub fn look(&self, x: DVec3, velocity: DVec3) -> ToolView {
         let nearest = self.sides.closest(x, self.tool);
+        let x = self.sides.near(x, self.tool);
         let normal = self.tool.state.rotation * nearest.normal;
-        ToolView { distance: nearest.signed_distance, normal, onset: 0.0 }
-    }
-
-    /// The same, where a spring begins or ends in this step, at a place that moves at `velocity`, m/s.
-    #[inline]
-    pub fn look_at(&self, x: DVec3, velocity: DVec3) -> ToolView {
-        let seen = self.look(x);
-        let approach = (self.tool.velocity_at(self.sides.near(x, self.tool)) - velocity).dot(seen.normal);
-        ToolView { onset: (approach * self.dt).abs(), ..seen }
+        let approach = (self.tool.velocity_at(x) - velocity).dot(normal);
+        ToolView { distance: nearest.signed_distance, normal, approach }
     }
 }
 
@@ -284,7 +278,7 @@ mod tests {
     fn facets_behind_a_smooth_tool_have_few_points() {
         let places = [DVec3::ZERO, DVec3::X, DVec3::Z];
         let of = |distances: [f64; 3], last: DVec3| {
-            let seen = |distance: f64, normal: DVec3| ToolView { distance, normal, onset: 0.0 };
+            let seen = |distance: f64, normal: DVec3| ToolView { distance, normal, approach: 0.0 };
             let [a, b, c] = distances;
             FacetPart::of(places, [&seen(a, DVec3::Y), &seen(b, DVec3::Y), &seen(c, last)])
         };
@@ -293,7 +287,7 @@ mod tests {
         let seen = [0.0, 0.1, 0.0].map(|x| ToolView {
             distance: x * tilted.x / 0.1 - 0.2,
             normal: tilted,
-            onset: 0.0,
+            approach: 0.0,
         });
         assert_eq!(FacetPart::of([DVec3::ZERO, DVec3::X, DVec3::Z], seen.each_ref()), FacetPart::Flat);
         assert_eq!(of([-0.1, -0.2, -0.1], DVec3::Y), FacetPart::Wholly);

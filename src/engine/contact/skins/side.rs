@@ -115,7 +115,6 @@ impl SkinSide<'_> {
             arms: [foot.x - self.place(&foot), DVec3::ZERO],
             velocity,
             acceleration: DVec3::ZERO,
-            keeps_onset: interaction.keeps_onsets(),
         };
         let inverse_mass = |n: DVec3| mobility.dot(n * n) / (weight * area);
         let response = interaction.respond(&state, inverse_mass, dt, before);

@@ -2,7 +2,7 @@
 
 use super::beside_held::ReachedSide;
 use super::fragile::{ContactActivity, FailingSkins, break_skins};
-use super::touching::{SavedContact, Touching};
+use super::touching::{Saved, Touching};
 use crate::contact::bodies::{CONTACT, MotionBounds, NodeTurn};
 use crate::contact::response::{CHANGE_OF_SURFACE, ContactEnergy, energy};
 use crate::plugin::SimBuilder;
@@ -244,15 +244,13 @@ impl Run for ContactSystem {
 
     fn save_with(&self, resources: &Resources) -> Vec<u8> {
         let contacts = resources.of(self.0);
-        let saved: Vec<SavedContact> = contacts.touching.iter().map(Touching::saved).collect();
+        let saved: Vec<Saved> = contacts.touching.iter().map(Touching::saved).collect();
         let whole: Vec<bool> = contacts.fragile.iter().map(FailingSkins::is_whole).collect();
         postcard::to_stdvec(&(saved, whole)).unwrap_or_default()
     }
 
     fn restore_with(&mut self, state: &[u8], resources: &Resources) -> bool {
-        let Ok((saved, whole)) = postcard::from_bytes::<(Vec<SavedContact>, Vec<bool>)>(state) else {
-            return false;
-        };
+        let Ok((saved, whole)) = postcard::from_bytes::<(Vec<Saved>, Vec<bool>)>(state) else { return false };
         let mut contacts = resources.of_mut(self.0);
         contacts.fragile.iter_mut().zip(&whole).for_each(|(fragile, &whole)| fragile.restore(whole));
         whole.len() == contacts.fragile.len()

@@ -1,7 +1,5 @@
 //! A pair of bodies with a contact.
 
-use serde::{Deserialize, Serialize};
-
 use crate::contact::active::ContactNodes;
 use crate::contact::bodies::{MemberParticles, MotionBounds, NodeTurn};
 use crate::contact::particles::ParticleContact;
@@ -135,7 +133,7 @@ impl Touching {
     }
 
     /// State in a checkpoint.
-    pub fn saved(&self) -> SavedContact {
+    pub fn saved(&self) -> Saved {
         let histories: &[&Histories] = match self {
             Self::Particles(contact) => &[&contact.contacts.histories],
             Self::Surface(contact) => &[&contact.contacts.histories],
@@ -143,12 +141,10 @@ impl Touching {
             Self::Skins(contact) => &contact.passes.each_ref().map(|pass| &pass.histories),
         };
         let histories = histories.iter().map(|histories| histories.entries().to_vec()).collect();
-        let onsets = if let Self::SkinOnTool(contact) = self { contact.onsets.saved() } else { Vec::new() };
-        SavedContact { histories, patches: self.patches().iter().map(Patch::saved).collect(), onsets }
+        (histories, self.patches().iter().map(Patch::saved).collect())
     }
 
-    /// Restores it; says whether it fits.
-    pub fn restore(&mut self, SavedContact { histories, patches, onsets }: SavedContact) -> bool {
+    pub fn restore(&mut self, (histories, patches): Saved) -> bool {
         let own: &mut [&mut Histories] = match self {
             Self::Particles(contact) => &mut [&mut contact.contacts.histories],
             Self::Surface(contact) => &mut [&mut contact.contacts.histories],
@@ -159,11 +155,6 @@ impl Touching {
             return false;
         }
         own.iter_mut().zip(histories).for_each(|(own, entries)| own.set(entries));
-        if let Self::SkinOnTool(contact) = self
-            && !contact.onsets.restore(&onsets)
-        {
-            return false;
-        }
         let own: &mut [Patch] = match self {
             Self::SkinOnTool(contact) => std::slice::from_mut(&mut contact.patch),
             Self::Skins(contact) => &mut contact.patches,
@@ -174,12 +165,5 @@ impl Touching {
     }
 }
 
-/// State of a pair in a checkpoint.
-#[derive(Serialize, Deserialize)]
-pub(in crate::contact) struct SavedContact {
-    histories: Vec<Vec<(PairKey, History)>>,
-    /// The last places of the vertices of skins.
-    patches: Vec<Vec<(u32, Last)>>,
-    /// Depths over which the springs of vertices on a tool begin, m.
-    onsets: Vec<(u32, f64)>,
-}
+/// Histories and the last places of skins.
+pub(super) type Saved = (Vec<Vec<(PairKey, History)>>, Vec<Vec<(u32, Last)>>);

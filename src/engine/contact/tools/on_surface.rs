@@ -160,7 +160,6 @@ impl OnSurface<'_> {
             arms: near.arms,
             velocity: motion.velocity(arm, place + shift) - tool.velocity_at(place),
             acceleration: motion.acceleration(place + shift) - tool.acceleration_at(place),
-            keeps_onset: false,
         };
         let own = motion.inverse_mass(arm, place + shift);
         let alone = |n: DVec3| own(n) + tool.inverse_mass_at(place, n);
@@ -227,7 +226,6 @@ impl OnSurface<'_> {
                 arms: history.arms,
                 velocity: motion.velocity(DVec3::ZERO, x) - tool.velocity_at(x),
                 acceleration: DVec3::ZERO,
-                keeps_onset: false,
             };
             energies.removed += interaction.held(&state, *dt, history);
         }
