@@ -12,7 +12,14 @@
 //! ```
 //!
 //! with the nearest point p of the surface, its normal n, and the signed distance s. Along the face the force
-//! is `-u grad w`, a share d/(2 D) of the normal force at most.
+//! is `-u grad w`, a share d/(2 D) of the normal force at most. A point x of an edge has the difference of
+//! the depths of x below the two nearest faces, over D:
+//!
+//! ```text
+//! w = (s(x) - s(x - D n)) / D
+//! ```
+//!
+//! which is zero below the ridge between them, where the edge itself takes over.
 
 use glam::DVec3;
 
