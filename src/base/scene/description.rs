@@ -73,6 +73,11 @@ impl Scene {
         self.bodies.iter().filter(move |body| is_meant(name, &body.name))
     }
 
+    /// Whether a body, by its number, has a plugin of that name, its own or one of the scene.
+    pub fn has_plugin(&self, body: usize, name: &str) -> bool {
+        self.plugins.iter().chain(&self.bodies[body].plugins).any(|plugin| plugin.name() == name)
+    }
+
     /// The contacts pair by pair, each with the index of the contact in the scene.
     pub fn contact_pairs(&self) -> impl Iterator<Item = (usize, Contact)> {
         self.contacts.iter().enumerate().flat_map(|(k, contact)| {

@@ -11,7 +11,7 @@ use super::approach::{Motions, is_known};
 use crate::materials::Law;
 use crate::notation::quantity;
 use crate::plugin::{BodyKind, BodyPlan, SimBuilder};
-use crate::scene::{Item, Scene};
+use crate::scene::Scene;
 use crate::shapes::Aabb;
 
 /// The plugin that takes the oscillations.
@@ -41,7 +41,7 @@ fn text([a, b]: [&BodyPlan; 2], motions: &Motions, sim: &SimBuilder<'_>) -> Opti
     let scene = sim.scene();
     let solid = |body: &&BodyPlan| body.kind == BodyKind::Solid;
     let without: Vec<&BodyPlan> =
-        [a, b].into_iter().filter(|body| solid(body) && !has_remedy(body, scene)).collect();
+        [a, b].into_iter().filter(|body| solid(body) && !scene.has_plugin(body.id.0, REMEDY)).collect();
     if a.id == b.id || without.is_empty() || !is_known(a) || !is_known(b) {
         return None;
     }
@@ -82,11 +82,6 @@ fn transit(pair: [&BodyPlan; 2], faces: &[FrontLayer; 2]) -> f64 {
         _ => 0.0,
     };
     pair.into_iter().zip(faces).map(of).fold(0.0, f64::max)
-}
-
-fn has_remedy(body: &BodyPlan, scene: &Scene) -> bool {
-    let mut all = scene.plugins.iter().chain(&scene.bodies[body.id.0].plugins);
-    all.any(|item: &Item| item.name() == REMEDY)
 }
 
 /// Whether a body yields by the plane wave that the impact sends into it: its stress is that of the

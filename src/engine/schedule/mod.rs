@@ -17,7 +17,7 @@ pub use limits::{Limit, TimeStepLimits};
 pub use order::{Schedule, ScheduleError};
 pub use resources::{Resources, Shareable, Shared, SharedValues};
 pub use stage::Stage;
-pub use step::{Clock, Step, StepError, replace_warning};
+pub use step::{Clock, Step, StepError, raise_warning, replace_warning};
 pub use system::{Run, System};
 
 pub use crate::world::{Access, Mode};

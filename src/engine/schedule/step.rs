@@ -138,6 +138,18 @@ pub fn replace_warning(warnings: &mut Vec<String>, begin: &str, text: String) {
     }
 }
 
+/// Warns of a number that has grown, with `begin`, the number and `rest`: in the place of the warning that
+/// begins alike, if that has a smaller number. Warnings are in checkpoints, so that a resumed run goes on.
+pub fn raise_warning(warnings: &mut Vec<String>, begin: &str, number: usize, rest: impl FnOnce() -> String) {
+    let told = warnings.iter().find_map(|warning| warning.strip_prefix(begin)).and_then(|rest| {
+        let number = rest.split_whitespace().next()?;
+        number.parse::<usize>().ok()
+    });
+    if told.is_none_or(|told| told < number) {
+        replace_warning(warnings, begin, format!("{begin} {number} {}", rest()));
+    }
+}
+
 impl Step<'_> {
     /// The error of a particle that has left the range of what makes sense; `particle` is its number in the
     /// body.

@@ -126,8 +126,8 @@ impl NodeView<'_> {
     /// is that of its lowest point, and the surface the plane that is tangential to it at the point nearest
     /// to the centre. None where a rim lies flat, and where an edge crosses none of the tool.
     pub fn nearest(&self, i: usize, x: DVec3, tool: &RigidBody) -> Option<SurfacePoint> {
-        if self.is_edge(i) {
-            return Some(self.crossing(i, x, tool)?.at);
+        if let Some(crossing) = self.crossing(i, x, tool) {
+            return Some(crossing?.at);
         }
         let nearest = tool.surface.closest(tool.reference(x));
         let Some(arm) = self.lowest(i, nearest.normal, tool) else { return Some(nearest) };
@@ -138,19 +138,14 @@ impl NodeView<'_> {
         Some(SurfacePoint { point, signed_distance, ..nearest })
     }
 
-    /// Whether a node is an edge.
-    pub fn is_edge(&self, i: usize) -> bool {
-        matches!(self, Self::Rigid(body) if matches!(body.nodes.list()[i].round, Round::Edge(_)))
-    }
-
-    /// Where the edge with its middle at `x` crosses one of a tool, if it is an edge and comes so near that
-    /// this counts.
-    pub fn crossing(&self, i: usize, x: DVec3, tool: &RigidBody) -> Option<Crossing> {
+    /// Where the edge with its middle at `x` crosses one of a tool, if it comes so near that this counts, and
+    /// if the node is an edge.
+    pub fn crossing(&self, i: usize, x: DVec3, tool: &RigidBody) -> Option<Option<Crossing>> {
         let Self::Rigid(body) = self else { return None };
         let Round::Edge(half) = body.nodes.list()[i].round else { return None };
         let half = tool.state.rotation.inverse() * (body.state.rotation * half);
         let middle = tool.reference(x);
-        Crossing::of(&*tool.surface, [middle - half, middle + half], self.size(i))
+        Some(Crossing::of(&*tool.surface, [middle - half, middle + half], self.size(i)))
     }
 
     /// Whether the lowest point of a rim is inside of the tool; a tool in the hole of a ring is near its

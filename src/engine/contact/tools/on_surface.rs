@@ -7,7 +7,7 @@ use super::reaction::NodePush;
 use super::share::Share;
 use super::together::{ContactSite, CoupledResponse};
 use crate::contact::active::MinimumLength;
-use crate::contact::bodies::{ContactSides, Crossing, NodeMotion, NodeView, Proximity};
+use crate::contact::bodies::{ContactSides, NodeMotion, NodeView, Proximity};
 use crate::contact::laws::Touch;
 use crate::contact::response::time_step::NormalMotion;
 use crate::contact::response::{ContactEnergy, ContactState, History, Interaction, Losses, PairKey};
@@ -77,10 +77,9 @@ impl OnSurface<'_> {
         let i = node as usize;
         let own_place = nodes.position(i);
         let center = self.sides.near(own_place, tool);
-        let crossing = if nodes.is_edge(i) { Some(nodes.crossing(i, center, tool)?) } else { None };
-        let nearest = match &crossing {
-            Some(Crossing { at, .. }) => *at,
-            None => nodes.nearest(i, center, tool)?,
+        let (crossing, nearest) = match nodes.crossing(i, center, tool) {
+            Some(crossing) => crossing.map(|crossing| (Some(crossing), crossing.at))?,
+            None => (None, nodes.nearest(i, center, tool)?),
         };
         let normal = tool.state.rotation * nearest.normal;
         let mut near = nodes.nearness(i, nearest.signed_distance, normal);

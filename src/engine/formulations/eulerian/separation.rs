@@ -8,7 +8,7 @@ use super::lists::EulerianBody;
 use super::rows::EulerianRows;
 use crate::notation::quantity;
 use crate::parallel::sum_over_own_blocks;
-use crate::schedule::Step;
+use crate::schedule::{Step, raise_warning};
 use crate::world::{Damage, PhaseId};
 
 /// Offset of the weighted mean of the neighbours of a particle inside of a body, over the support radius, at
@@ -63,20 +63,15 @@ pub(super) fn warn(phase: PhaseId, packed: &EulerianRows, step: &mut Step<'_>) {
             continue;
         }
         let begin = format!("Eulerian body `{}` has come apart:", step.world.body(body.id).name);
-        let told = step.warnings.iter_mut().find(|warning| warning.starts_with(&begin));
-        if told.as_ref().is_some_and(|told| number_of(told, &begin) >= open) {
-            continue;
-        }
-        let text = format!(
-            "{begin} {open} of its inner particles lay open at {}; particles drawn apart by more than the support do not hold together, \
-             whatever the strength of the material: the plugin `failure` lets it break where the material does, and `TotalLagrangian` and \
-             `UpdatedLagrangian` bodies can be drawn farther",
-            quantity(step.clock.time, "s")
-        );
-        match told {
-            Some(told) => *told = text,
-            None => step.warnings.push(text),
-        }
+        let time = step.clock.time;
+        raise_warning(step.warnings, &begin, open, || {
+            format!(
+                "of its inner particles lay open at {}; particles drawn apart by more than the support do not hold together, \
+                 whatever the strength of the material: the plugin `failure` lets it break where the material does, and `TotalLagrangian` and \
+                 `UpdatedLagrangian` bodies can be drawn farther",
+                quantity(time, "s")
+            )
+        });
     }
 }
 
@@ -91,10 +86,4 @@ fn laid_open(packed: &EulerianRows, body: &EulerianBody) -> usize {
         rows.zip(inside).filter(|&(row, inside)| *inside && is_there(row) && is_open(row)).count() as f64
     });
     count as usize
-}
-
-/// The number that a warning has given.
-fn number_of(warning: &str, begin: &str) -> usize {
-    let rest = warning[begin.len()..].trim_start();
-    rest.split(' ').next().and_then(|number| number.parse().ok()).unwrap_or(0)
 }

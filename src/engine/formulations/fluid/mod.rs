@@ -72,3 +72,4 @@ pub use lanes::{FlowParticle, FluidKernel};
 pub use setup::estimate_sound_speeds;
 pub use stabilizers::{Interior, Repayment, displace};
 pub use walls::{Slip, Wall};
+pub use warnings::Tension;

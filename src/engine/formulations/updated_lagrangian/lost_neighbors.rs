@@ -10,7 +10,7 @@ use crate::formulations::bonded::{BodyKernel, Ellipsoid};
 use crate::linalg::{Eigen, Sym3};
 use crate::notation::quantity;
 use crate::plugin::Setup;
-use crate::schedule::Step;
+use crate::schedule::{Step, raise_warning};
 use crate::world::{BodyId, Damage, SupportRadius, World};
 
 /// Smallest eigenvalue of a moment matrix, which is 1 inside of a body, 1/2 at a face and 1/8 in a corner,
@@ -102,10 +102,6 @@ impl UpdatedRows {
                 "particles of body `{}` have lost their neighbours and carry no stress:",
                 step.world.body(kernel.body).name
             );
-            let told = step.warnings.iter_mut().find(|warning| warning.starts_with(&begin));
-            if told.as_ref().is_some_and(|told| number_of(told, &begin) >= now) {
-                continue;
-            }
             let can_fail = step.world.phase(step.world.body(kernel.body).phase).has::<Damage>();
             let help = match can_fail {
                 true => "the body has been torn there before its material failed",
@@ -113,19 +109,12 @@ impl UpdatedRows {
                     "smaller spacings or a larger `support` keep the body together, the plugin `failure` lets it break"
                 }
             };
-            let text = format!("{begin} {now} of them at {}; {help}", quantity(step.clock.time, "s"));
-            match told {
-                Some(told) => *told = text,
-                None => step.warnings.push(text),
-            }
+            let time = step.clock.time;
+            raise_warning(step.warnings, &begin, now, || {
+                format!("of them at {}; {help}", quantity(time, "s"))
+            });
         }
     }
-}
-
-/// The number that a warning of released particles has given.
-fn number_of(warning: &str, begin: &str) -> usize {
-    let rest = warning[begin.len()..].trim_start();
-    rest.split(' ').next().and_then(|number| number.parse().ok()).unwrap_or(0)
 }
 
 /// Whether the moment matrix that has this inverse has an eigenvalue below a limit, as seen in the ellipsoid

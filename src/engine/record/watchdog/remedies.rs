@@ -1,38 +1,25 @@
 //! Remedies that a message proposes for a flow that goes wrong: never a plugin that it has.
 
-use crate::formulations::fluid::{FlowCloud, FlowParticle, Group};
+use crate::formulations::fluid::{FlowCloud, Group, Tension};
 use crate::notation::quantity;
-use crate::plugin::{BodyPlan, SimBuilder};
-use crate::scene::Item;
+use crate::plugin::SimBuilder;
 use crate::schedule::Step;
-use crate::world::BodyId;
-
-/// Minimum pressure below zero, over the largest magnitude of the pressure in the same flow, that counts as
-/// tension.
-const TENSION: f64 = 0.1;
 
 /// Share of the energy that walls have given above which it is that of gaps.
 const GAP_SHARE: f64 = 0.5;
 
-/// The plugins of all bodies.
+/// The bodies that have the plugins proposed.
 pub(super) struct Remedies {
-    /// Names of the plugins of each body, those of the scene included.
-    plugins: Vec<Vec<String>>,
+    diffused: Vec<bool>,
+    controlled: Vec<bool>,
 }
 
 impl Remedies {
-    /// The plugins that the scene names.
+    /// Those of a scene.
     pub fn new(sim: &SimBuilder<'_>) -> Self {
         let scene = sim.scene();
-        let of = |body: &BodyPlan| {
-            let all = scene.plugins.iter().chain(&scene.bodies[body.id.0].plugins);
-            all.map(|item: &Item| item.name().to_owned()).collect()
-        };
-        Self { plugins: sim.bodies().iter().map(of).collect() }
-    }
-
-    fn has(&self, body: BodyId, plugin: &str) -> bool {
-        self.plugins[body.0].iter().any(|name| name == plugin)
+        let having = |plugin| (0..scene.bodies.len()).map(|body| scene.has_plugin(body, plugin)).collect();
+        Self { diffused: having("density_diffusion"), controlled: having("tensile_control") }
     }
 
     /// Advice for walls that have given so much energy, J.
@@ -44,7 +31,7 @@ impl Remedies {
         }
         let lacks_diffusion = step.resources.try_get::<FlowCloud>().is_some_and(|cloud| {
             let mut fluids = cloud.groups.iter().filter(|group| group.fluid().is_some());
-            fluids.any(|group| !self.has(group.body, "density_diffusion"))
+            fluids.any(|group| !self.diffused[group.body.0])
         });
         let noise = if lacks_diffusion { "`density_diffusion()` for its noise, " } else { "" };
         let is_open = |cloud: &FlowCloud| !cloud.is_confined() && !cloud.groups.iter().any(Group::is_wall);
@@ -66,17 +53,14 @@ impl Remedies {
         let mut fluids = cloud.groups.iter().filter(|group| group.fluid().is_some());
         fluids.find_map(|group| {
             let body = &step.world.body(group.body).name;
-            if name.is_some_and(|name| name != body) || self.has(group.body, "tensile_control") {
+            if name.is_some_and(|name| name != body) || self.controlled[group.body.0] {
                 return None;
             }
-            let pressures = cloud.records()[group.cloud.clone()].iter().map(FlowParticle::pressure);
-            let (least, largest) = pressures.fold((0.0_f64, 0.0_f64), |(least, largest), pressure| {
-                (least.min(pressure), largest.max(pressure.abs()))
-            });
-            (least < -TENSION * largest).then(|| {
+            let tension = Tension::of(&cloud.records()[group.cloud.clone()]);
+            (tension.share() > 0.0).then(|| {
                 format!(
                     "`{body}` is under tension, down to {}, which causes pairing of particles and voids: `tensile_control()` among its `plugins`, or, in a closed flow, a pressure at the start that keeps it above zero, `Fluid(pressure: ...)`",
-                    quantity(least, "Pa")
+                    quantity(tension.minimum, "Pa")
                 )
             })
         })

@@ -27,6 +27,7 @@ mod fit;
 mod friction;
 
 mod tension;
+pub use tension::Tension;
 
 mod unevenness;
 

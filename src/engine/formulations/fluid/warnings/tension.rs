@@ -10,7 +10,7 @@ use crate::parallel::{BlockSum, sum_over_blocks};
 use crate::plugin::SimBuilder;
 use crate::schedule::Step;
 
-/// Pressure below zero over the largest magnitude of the pressure in the same body that counts as tension.
+/// Pressure below zero over the largest magnitude of the pressure in the same fluid that counts as tension.
 const TENSION: f64 = 0.1;
 /// Share of the particles in tension that is worth a warning.
 const SHARE: f64 = 0.25;
@@ -27,24 +27,48 @@ pub struct TensionWatch {
     frames: Vec<Option<u32>>,
 }
 
-/// Number of particles, and of those in tension.
-#[derive(Clone, Copy, Debug, Default)]
-struct InTension([usize; 2]);
+/// Tension in a fluid.
+#[derive(Clone, Copy, Debug)]
+pub struct Tension {
+    /// Number of its particles, and of those in tension.
+    counts: [usize; 2],
+    /// Minimum pressure, zero at most, Pa.
+    pub minimum: f64,
+}
 
-impl BlockSum for InTension {
+#[derive(Clone, Copy, Debug, Default)]
+struct Counts([usize; 2]);
+
+impl BlockSum for Counts {
     fn add(&mut self, next: &Self) {
         (0..2).for_each(|k| self.0[k] += next.0[k]);
+    }
+}
+
+impl Tension {
+    /// That of the particles of one fluid.
+    pub fn of(records: &[FlowParticle]) -> Self {
+        let pressures = || records.iter().filter(|row| row.volume() > 0.0).map(FlowParticle::pressure);
+        let largest = pressures().map(f64::abs).fold(0.0, f64::max);
+        let Counts(counts) = sum_over_blocks(records, &|_, records: &[FlowParticle]| {
+            let there = || records.iter().filter(|record| record.volume() > 0.0);
+            let is_tense = |record: &&FlowParticle| record.pressure() < -TENSION * largest;
+            Counts([there().count(), there().filter(is_tense).count()])
+        });
+        Self { counts, minimum: pressures().fold(0.0, f64::min) }
+    }
+
+    /// Share of the particles that are in tension.
+    pub fn share(&self) -> f64 {
+        let [all, tense] = self.counts.map(|count| count as f64);
+        if all > 0.0 { tense / all } else { 0.0 }
     }
 }
 
 impl TensionWatch {
     /// A watch over the fluids of `groups` that have neither viscosity nor the plugin.
     pub fn new(groups: &[Group], sim: &SimBuilder<'_>) -> Self {
-        let scene = sim.scene();
-        let is_damped = |group: &Group| {
-            let own = &scene.bodies[group.body.0].plugins;
-            scene.plugins.iter().chain(own).any(|plugin| plugin.name() == REMEDY)
-        };
+        let is_damped = |group: &Group| sim.scene().has_plugin(group.body.0, REMEDY);
         let watched =
             |group: &Group| group.fluid().is_some_and(|fluid| fluid.viscosity == 0.0) && !is_damped(group);
         Self { frames: groups.iter().map(|group| watched(group).then_some(0)).collect() }
@@ -54,11 +78,8 @@ impl TensionWatch {
     pub fn look(&mut self, cloud: &FlowCloud, scratch: &mut Vec<Option<f64>>, step: &mut Step<'_>) {
         for (group, frames) in cloud.groups.iter().zip(&mut self.frames) {
             let Some(count) = frames else { continue };
-            let records = &cloud.records()[group.cloud.clone()];
-            let pressures = || records.iter().filter(|row| row.volume() > 0.0).map(FlowParticle::pressure);
-            let largest = pressures().map(f64::abs).fold(0.0, f64::max);
-            let [all, tense] = count_in_tension(records, TENSION * largest);
-            if tense as f64 > SHARE * all as f64 {
+            let tension = Tension::of(&cloud.records()[group.cloud.clone()]);
+            if tension.share() > SHARE {
                 *count += 1;
             } else if *count > 0 && !(cloud.is_confined() && is_closed(cloud, scratch)) {
                 *count = 0;
@@ -72,17 +93,9 @@ impl TensionWatch {
                  `plugins: [density_diffusion(), particle_shifting(), {REMEDY}(alpha: 0.02, beta: 0.0)]`, or, in a closed flow, a pressure at the start that keeps it above zero, `Fluid(pressure: ...)`",
                 step.world.body(group.body).name,
                 quantity(step.clock.time, "s"),
-                100.0 * tense as f64 / all as f64,
-                quantity(pressures().fold(0.0, f64::min), "Pa"),
+                100.0 * tension.share(),
+                quantity(tension.minimum, "Pa"),
             ));
         }
     }
-}
-
-fn count_in_tension(records: &[FlowParticle], limit: f64) -> [usize; 2] {
-    let InTension(counts) = sum_over_blocks(records, &|_, records: &[FlowParticle]| {
-        let there = || records.iter().filter(|record| record.volume() > 0.0);
-        InTension([there().count(), there().filter(|record| record.pressure() < -limit).count()])
-    });
-    counts
 }
