@@ -1,5 +1,7 @@
 //! F10: a square that starts to move in a box, SPHERIC benchmark 6.
 
+use std::ops::RangeInclusive;
+
 use anyhow::{Context, Result};
 use meshless_engine::formulations::fluid::FlowCloud;
 use meshless_engine::plugin::Registry;
@@ -24,8 +26,8 @@ const REFERENCE: &str = include_str!("../../../tests/validation/moving_square/re
 const SOURCE: &str = "finite differences, reference.csv";
 /// Averaging intervals, s: during the acceleration of the square, and over the time in which sound crosses
 /// the box and comes back.
-const START: [f64; 2] = [0.4, 0.6];
-const STEADY: [f64; 2] = [1.5, 2.17];
+const START: RangeInclusive<f64> = 0.4..=0.6;
+const STEADY: RangeInclusive<f64> = 1.5..=2.17;
 /// Tolerances at 40 across, proportional to the spacing. The error of friction is relative to the whole drag.
 const DRAG: f64 = 0.05;
 const FRICTION: f64 = 0.1;
@@ -51,15 +53,14 @@ fn moving_square(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     let coarse = 40.0 / across as f64;
     let mut checks = Vec::new();
     for (name, times) in [("at the start", START), ("after it", STEADY)] {
-        let of = |record: &Record| mean(record, times);
-        let [of_pressure, of_friction] = reference.each_ref().map(of);
+        let [of_pressure, of_friction] = [reference[0].mean(&times)?, reference[1].mean(&times)?];
+        let [pressure, friction] = [pressure.mean(&times)?, friction.mean(&times)?];
         let whole = of_pressure + of_friction;
         let tolerance = Tolerance::Relative(DRAG * coarse);
-        let drag =
-            Check::new(format!("drag {name}"), of(&pressure) + of(&friction), whole, tolerance, "1", SOURCE);
+        let drag = Check::new(format!("drag {name}"), pressure + friction, whole, tolerance, "1", SOURCE);
         let tolerance = Tolerance::Absolute(FRICTION * coarse * whole);
         let name = format!("drag of friction {name}");
-        let friction = Check::new(name, of(&friction), of_friction, tolerance, "1", SOURCE);
+        let friction = Check::new(name, friction, of_friction, tolerance, "1", SOURCE);
         checks.extend([drag.converging(), friction.converging()]);
     }
     checks.push(balance.check(Kind::Smooth));
@@ -94,10 +95,4 @@ fn drag(simulation: &Simulation, square: BodyId) -> Result<[f64; 2]> {
     let (all, friction) =
         forces.iter().fold((0.0, 0.0), |sum, (all, friction)| (sum.0 + all.x, sum.1 + friction.x));
     Ok([PER_FORCE * (all - friction), PER_FORCE * friction])
-}
-
-/// Mean over a time.
-fn mean(record: &Record, [from, to]: [f64; 2]) -> f64 {
-    let samples = record.0.iter().filter(|(t, _)| (from..=to).contains(t)).map(|sample| sample.1);
-    samples.clone().sum::<f64>() / samples.count() as f64
 }

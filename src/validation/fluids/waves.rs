@@ -47,12 +47,8 @@ fn standing_wave(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     };
     let period = of_reference("period_s")?;
     // Over a whole period the exchange with potential energy averages out.
-    let mean = |from: f64| {
-        let within = |t: f64| (from * period..(from + 1.0) * period).contains(&t);
-        let values: Vec<f64> = kinetic.0.iter().filter(|(t, _)| within(*t)).map(|sample| sample.1).collect();
-        values.iter().sum::<f64>() / values.len() as f64
-    };
-    let rate = (mean(0.5) / mean(1.5)).ln() / period;
+    let mean = |from: f64| kinetic.mean(&(from * period..=(from + 1.0) * period));
+    let rate = (mean(0.5)? / mean(1.5)?).ln() / period;
     Ok(vec![
         Check::new(
             "decay rate of the energy of the wave",
