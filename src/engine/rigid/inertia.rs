@@ -71,7 +71,8 @@ impl Tilt {
         let gyration = (second.trace() / total).sqrt();
         let aside = center - middle;
         // Not so where there are no particles, or all in one place.
-        if !(aside.length() > ROUND_OFF * gyration) {
+        let is_aside = aside.length() > ROUND_OFF * gyration;
+        if !is_aside {
             return none;
         }
         // Particles in a plane, as in two dimensions, have no second moment across it.
