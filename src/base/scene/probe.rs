@@ -103,8 +103,9 @@ pub enum Quantity {
     /// Velocity \[m/s\].
     Velocity,
     /// Sum of all forces on the particles of the selection except those of supports \[N\]. Where a condition
-    /// holds or drives the selection, it is the force that the body exerts on the condition: the weight of a
-    /// body that hangs from its support points down.
+    /// holds or drives the selection, it is the force that the body exerts on the condition, its own weight
+    /// included: the weight of a body that hangs from its support points down. Of a rigid body it is that on
+    /// the whole body.
     Force,
     /// Torque of the same forces about the centre of mass of the selection \[N m\].
     Torque,

@@ -46,6 +46,7 @@ pub use lattice::Lattice;
 pub use mesh_fault::MeshFault;
 pub use moments::Moments;
 pub use morton::{MortonSort, morton_order};
+pub use quadrature::counted_moments;
 pub use region::{Aabb, Region};
 pub use rings::Rings;
 pub use shape::Shape;

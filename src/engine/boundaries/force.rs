@@ -11,7 +11,7 @@ use crate::scene::{Expression, PerAxis, Select};
 
 /// Loads particles with a force of a given total, in equal shares; with a selection of one particle
 /// (`nearest`) it is a point force. It keeps its direction. On a rigid body it acts at the stated point
-/// itself, or on the `face`; on other bodies on the particles, half a spacing inside.
+/// itself, or on the `face` or the part of it that is `within`; on other bodies on the particles, half a spacing inside.
 ///
 /// A smooth start within 10 ms: `Force(on: Select(body: "beam", face: MaxX), value: (0.0,
 /// "-100*smoothstep(t/0.01)"))`.
@@ -36,7 +36,7 @@ impl Plugin for TotalForce {
         let field = VectorField::new(self.value, sim)?;
         let share = 1.0 / selection.len() as f64;
         let shares = selection.parts.iter().map(|(_, rows)| vec![share; rows.len()]).collect();
-        let arms = arms_of(&self.on, &selection, sim);
+        let arms = arms_of(&self.on, &selection, sim)?;
         let law = DeadLoad { name: Self::NAME, field, shares, arms };
         load::apply("force", law, &selection, sim, |system| system);
         Ok(())

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::plugin::{BodyKind, BodyPlan, Selection, SimBuilder};
+use crate::plugin::{BodyKind, BodyPlan, Selection, SetupError, SimBuilder, loaded_facets};
 use crate::rigid::{RigidBodies, Wrench};
 use crate::scene::{Face, Select};
 use crate::schedule::Step;
@@ -12,22 +12,75 @@ use crate::world::BodyId;
 /// Distance from the surface, over the spacing, up to which a point is on it.
 const ON: f64 = 0.2;
 
+/// Length of the facets in which a part of a face is measured, over the spacing.
+const FACETS: f64 = 0.5;
+
+/// The stated part of a face.
+#[derive(Clone, Copy)]
+pub(super) struct FacePart {
+    /// m2; m in two dimensions.
+    pub area: f64,
+    /// m.
+    pub middle: DVec3,
+}
+
+/// The part of a `face` of a rigid body that is `within` a shape. Its particles are a part that ends between
+/// particles, up to half a spacing away.
+///
+/// # Errors
+/// The shape of the selection is not one of this dimension.
+pub(super) fn face_part(
+    select: &Select,
+    id: BodyId,
+    sim: &SimBuilder<'_>,
+) -> Result<Option<FacePart>, SetupError> {
+    let (body, shape) = (sim.body(id), &sim.scene().bodies[id.0].shape);
+    let is_part = select.face.is_some() && select.within.is_some() && select.nearest.is_none();
+    if body.kind != BodyKind::Rigid || !is_part {
+        return Ok(None);
+    }
+    let Some(facets) = shape.facets(sim.dimension(), sim.folder(), FACETS * body.spacing) else {
+        return Ok(None);
+    };
+    let (mut area, mut moment) = (0.0, DVec3::ZERO);
+    for loaded in loaded_facets(select, id, &facets, sim)? {
+        let part = loaded.share * facets.normal_and_measure(loaded.facet as usize).1;
+        area += part;
+        moment += part * loaded.middle(&facets);
+    }
+    Ok((area > 0.0).then(|| FacePart { area, middle: moment / area }))
+}
+
 /// From the selected particles of every body to the points on which a load acts, in the reference
 /// configuration, m; none for bodies that deform. That is the stated point of a selection by `nearest`, and
-/// the foot of the particle on the side of one by `face`. Where the shape has no such point, a load acts on
-/// the particle itself.
-pub(super) fn arms_of(select: &Select, selection: &Selection, sim: &SimBuilder<'_>) -> Vec<Vec<DVec3>> {
+/// the foot of the particle on the side of one by `face`; on a part of a face the feet are moved together, so
+/// that their middle is that of the part. Where the shape has no such point, a load acts on the particle
+/// itself.
+///
+/// # Errors
+/// The shape of the selection is not one of this dimension.
+pub(super) fn arms_of(
+    select: &Select,
+    selection: &Selection,
+    sim: &SimBuilder<'_>,
+) -> Result<Vec<Vec<DVec3>>, SetupError> {
     let of = |(id, rows): &(BodyId, Vec<u32>)| {
         let body = sim.body(*id);
         let shape = &sim.scene().bodies[id.0].shape;
         let is_beside = select.nearest.is_some() || select.face.is_some();
         if body.kind != BodyKind::Rigid || !is_beside {
-            return Vec::new();
+            return Ok(Vec::new());
         }
-        let Ok(region) = shape.region(sim.dimension(), sim.folder(), "shape") else { return Vec::new() };
-        let arm =
-            |&row: &u32| arm(select, body.sites[row as usize - body.rows.start].position, body, &*region);
-        rows.iter().map(arm).collect()
+        let Ok(region) = shape.region(sim.dimension(), sim.folder(), "shape") else { return Ok(Vec::new()) };
+        let particle = |row: u32| body.sites[row as usize - body.rows.start].position;
+        let mut arms: Vec<DVec3> =
+            rows.iter().map(|&row| arm(select, particle(row), body, &*region)).collect();
+        if let Some(part) = face_part(select, *id, sim)? {
+            let feet = rows.iter().zip(&arms).map(|(&row, arm)| particle(row) + *arm);
+            let beside = part.middle - feet.sum::<DVec3>() / rows.len() as f64;
+            arms.iter_mut().for_each(|arm| *arm += beside);
+        }
+        Ok(arms)
     };
     selection.parts.iter().map(of).collect()
 }

@@ -16,7 +16,7 @@ use super::beside_held;
 use super::field::VectorField;
 use super::symmetry::planes_of;
 use crate::notation::{place, quantity};
-use crate::plugin::{BodyPlan, Offer, Selection, SetupError, SimBuilder, facets_of};
+use crate::plugin::{BodyPlan, LoadedFacet, Offer, Selection, SetupError, SimBuilder, loaded_facets};
 use crate::scene::{Expression, Select};
 use crate::schedule::{AccountKind, Mode, Resources, Run, Shared, Stage, Step, StepError, System};
 use crate::shapes::directed_area;
@@ -40,9 +40,9 @@ struct SkinLoad {
     label: &'static str,
     kind: LoadKind,
     patch: Patch,
-    /// Facets, with their middles in the reference configuration, m, and their areas there, m2; stated areas
-    /// come in as a factor.
-    facets: Vec<(u32, DVec3, f64)>,
+    /// The loaded parts of facets, with their middles in the reference configuration, m, and their areas
+    /// there, m2; stated areas come in as a factor.
+    facets: Vec<(LoadedFacet, DVec3, f64)>,
     factor: f64,
     /// Forces on the vertices at the end of the last step, N.
     last: Vec<DVec3>,
@@ -100,7 +100,7 @@ pub(super) fn skins_of(
     // A face of a shape without one: the load on particles says what is wrong.
     let has_any = |skins: &Vec<Arc<Skin>>| -> Result<bool, SetupError> {
         for skin in skins {
-            if !facets_of(select, skin.body, &skin.facets, sim)?.is_empty() {
+            if !loaded_facets(select, skin.body, &skin.facets, sim)?.is_empty() {
                 return Ok(true);
             }
         }
@@ -146,12 +146,13 @@ pub(super) fn apply(
     let mut loads = Vec::new();
     let mut total = 0.0;
     for skin in skins {
-        let chosen = facets_of(select, skin.body, &skin.facets, sim)?;
-        let of = |&facet: &u32| {
-            let measure = skin.measure[facet as usize];
-            (facet, skin.facets.center(facet as usize), measure)
+        let of = |loaded: LoadedFacet| {
+            let area = loaded.share * skin.measure[loaded.facet as usize];
+            (loaded, loaded.middle(&skin.facets), area)
         };
-        let facets: Vec<_> = chosen.iter().map(of).collect();
+        let facets: Vec<_> =
+            loaded_facets(select, skin.body, &skin.facets, sim)?.into_iter().map(of).collect();
+        let chosen: Vec<u32> = facets.iter().map(|(loaded, ..)| loaded.facet).collect();
         total += facets.iter().map(|facet| facet.2).sum::<f64>();
         if facets.is_empty() {
             continue;
@@ -241,7 +242,7 @@ impl Run for Make {
         let mut loads = resources.of_mut(self.0);
         let fits = saved.len() == loads.0.len();
         for (load, saved) in loads.0.iter_mut().zip(saved) {
-            let facets: Vec<u32> = load.facets.iter().map(|facet| facet.0).collect();
+            let facets: Vec<u32> = load.facets.iter().map(|(loaded, ..)| loaded.facet).collect();
             load.patch.restore(&saved.places);
             load.patch.select(facets);
             (load.last, load.is_broken, load.is_told) = (saved.last, saved.is_broken, saved.is_told);
@@ -304,7 +305,8 @@ impl SkinLoad {
             return Ok(());
         }
         let skin = &self.patch.skin;
-        self.facets.retain(|facet| !skin.particles_of(facet.0).any(|particle| has_failed(&particle)));
+        self.facets
+            .retain(|(loaded, ..)| !skin.particles_of(loaded.facet).any(|particle| has_failed(&particle)));
         if !std::mem::replace(&mut self.is_told, true) {
             step.warnings.push(format!(
                 "the {label} on body `{name}` leaves out the parts of the surface whose particles have failed, from {now} on: the load there is lost"
@@ -317,7 +319,7 @@ impl SkinLoad {
     fn load(&mut self, step: &Step<'_>) -> Result<(), StepError> {
         let Self { label, kind, patch, facets, factor, .. } = self;
         let (axes, t) = (patch.skin.facets.axes, step.clock.end());
-        for &(facet, middle, area) in &*facets {
+        for &(LoadedFacet { facet, share, weights }, middle, area) in &*facets {
             let corners = patch.corners(facet);
             if !corners.iter().all(|corner| corner.is_there) {
                 continue;
@@ -326,7 +328,8 @@ impl SkinLoad {
                 * match kind {
                     LoadKind::Traction(field) => area * field.at(middle, t),
                     LoadKind::Pressure(value) => {
-                        -value.eval(middle, t) * directed_area(axes, &corners.map(|corner| corner.place))
+                        let whole = directed_area(axes, &corners.map(|corner| corner.place));
+                        -value.eval(middle, t) * share * whole
                     }
                 };
             if !force.is_finite() {
@@ -338,7 +341,7 @@ impl SkinLoad {
                 );
                 return Err(StepError::System { system: (*label).to_owned(), message });
             }
-            (0..axes).for_each(|k| patch.push_corner(facet, k, force / axes as f64));
+            (0..axes).for_each(|k| patch.push_corner(facet, k, weights[k] * force));
         }
         Ok(())
     }

@@ -7,10 +7,15 @@ use glam::DVec3;
 use crate::assembly::build;
 use crate::plugin::Registry;
 use crate::scene::{Source, parse};
-use crate::world::{BodyId, Mass, Velocity};
+use crate::world::{BodyId, Mass, ReferencePosition, Velocity};
 
 /// The momentum that a load gives to a free body in a step of 10 us over the time, N.
 fn force(dimension: &str, shape: &str, lattice: &str, load: &str) -> DVec3 {
+    force_and_moment(dimension, shape, lattice, load).0
+}
+
+/// The same, and the angular momentum about the origin over the time, N m.
+fn force_and_moment(dimension: &str, shape: &str, lattice: &str, load: &str) -> (DVec3, DVec3) {
     let text = format!(
         r#"(dimension: {dimension}, materials: {{"soft": StVenantKirchhoff(density: 1000, young: 1e6, poisson: 0.3)}},
             bodies: [(name: "b", material: "soft", shape: {shape}, spacing: 0.01, lattice: {lattice}, formulation: TotalLagrangian)],
@@ -21,7 +26,10 @@ fn force(dimension: &str, shape: &str, lattice: &str, load: &str) -> DVec3 {
     sim.run(|_| true).unwrap();
     let (view, rows) = sim.world().body_view(BodyId(0));
     let (mass, velocity) = (view.read::<Mass>().unwrap(), view.read::<Velocity>().unwrap());
-    rows.map(|row| mass[row].0 * velocity[row].0).sum::<DVec3>() / 1e-5
+    let place = view.read::<ReferencePosition>().unwrap();
+    let momentum = |row: usize| mass[row].0 * velocity[row].0;
+    let force = rows.clone().map(momentum).sum::<DVec3>() / 1e-5;
+    (force, rows.map(|row| place[row].0.cross(momentum(row))).sum::<DVec3>() / 1e-5)
 }
 
 const BORED: &str = "Difference(Box(min: (0, 0, 0), max: (0.1, 0.1, 0.05)), Cylinder(from: (0.05, 0.05, -1), to: (0.05, 0.05, 1), radius: 0.03))";
@@ -80,4 +88,68 @@ fn a_pressure_on_an_inclined_side_is_along_its_normal() {
     let cut = "Difference(Box(min: (0, 0, 0), max: (0.1, 0.1, 0.03)), HalfSpace(point: (0.1, 0.05, 0), normal: (-1, -2, 0)))";
     let found = force("Three", cut, "BodyFitted()", load);
     assert!(found.distance(expected) < 0.02 * expected.length(), "{found} {expected}");
+}
+
+#[test]
+fn a_load_on_part_of_a_face_ends_where_the_part_does() {
+    // Borders between particles, in the middle of facets and close to their ends.
+    for (lo, hi) in [(-0.033, 0.021), (-0.0151, 0.0149), (-0.0201, 0.0299), (0.0021, 0.0197)] {
+        let within = format!("Box(min: (0.05, {lo}), max: (0.15, {hi}))");
+        let load =
+            format!(r#"Traction(on: Select(body: "b", face: MaxX, within: {within}), value: (1000, 200))"#);
+        let (found, moment) =
+            force_and_moment("Two", "Box(min: (0, -0.05), max: (0.1, 0.05))", "Regular", &load);
+        let expected = (hi - lo) * DVec3::new(1000.0, 200.0, 0.0);
+        let arm = DVec3::new(0.1, 0.5 * (lo + hi), 0.0);
+        assert!(found.distance(expected) < 1e-6 * expected.length(), "{lo} to {hi}: {found} {expected}");
+        let expected = arm.cross(expected).z;
+        assert!((moment.z - expected).abs() < 1e-4, "{lo} to {hi}: {moment} {expected}");
+    }
+}
+
+#[test]
+fn a_load_on_part_of_a_face_in_space_has_its_area_and_middle() {
+    let disc = "Cylinder(from: (0.013, -0.004, 0), to: (0.013, -0.004, 1), radius: 0.022)";
+    let plate = "Box(min: (-0.033, -0.017, 0.03), max: (0.021, 0.033, 0.08))";
+    for (within, area, middle) in [
+        (disc, PI * 0.022 * 0.022, DVec3::new(0.013, -0.004, 0.05)),
+        (plate, 0.054 * 0.05, DVec3::new(-0.006, 0.008, 0.05)),
+    ] {
+        let load = format!(r#"Pressure(on: Select(body: "b", face: MaxZ, within: {within}), value: 1000)"#);
+        let shape = "Box(min: (-0.05, -0.05, 0), max: (0.05, 0.05, 0.05))";
+        let (found, moment) = force_and_moment("Three", shape, "Regular", &load);
+        let expected = -1000.0 * area * DVec3::Z;
+        assert!(found.distance(expected) < 0.003 * expected.length(), "{within}: {found} {expected}");
+        let foot = DVec3::Z.cross(moment) / expected.z;
+        assert!((foot - middle).truncate().length() < 1e-4, "{within}: {foot} {middle}");
+    }
+}
+
+#[test]
+fn a_load_on_part_of_a_face_of_a_rigid_body_has_its_area_and_middle() {
+    for (lo, hi) in [(-0.033, 0.021), (-0.0151, 0.0149), (-0.0201, 0.0299)] {
+        let load = format!(
+            r#"Traction(on: Select(body: "b", face: MaxX, within: Box(min: (0.05, {lo}), max: (0.15, {hi}))), value: (1000, 0))"#
+        );
+        let text = format!(
+            r#"(dimension: Two, materials: {{"iron": StVenantKirchhoff(density: 1000, young: 1e6, poisson: 0.3)}},
+                bodies: [(name: "b", material: "iron", shape: Box(min: (0, -0.05), max: (0.1, 0.05)), spacing: 0.01, formulation: Rigid)],
+                conditions: [{load}], time: (end: 1e-5, step: Fixed(1e-5)))"#
+        );
+        let (scene, source) = parse(Source::new("test.ron", text)).unwrap_or_else(|e| panic!("{e}"));
+        let mut sim = build(&scene, &source, &Registry::standard()).unwrap_or_else(|e| panic!("{e}"));
+        sim.run(|_| true).unwrap();
+        let (view, rows) = sim.world().body_view(BodyId(0));
+        let velocity = view.read::<Velocity>().unwrap();
+        let place = view.read::<ReferencePosition>().unwrap();
+        // A square of 10 kg per metre, with a moment of inertia of m a^2 / 6.
+        let (mass, inertia, force) = (10.0, 10.0 * 0.01 / 6.0, 1000.0 * (hi - lo));
+        let mean = rows.clone().map(|row| velocity[row].0).sum::<DVec3>() / rows.len() as f64;
+        let (first, last) = (rows.start, rows.end - 1);
+        let arm = place[last].0 - place[first].0;
+        let spin = arm.cross(velocity[last].0 - velocity[first].0).z / arm.length_squared();
+        let moment = -0.5 * (lo + hi) * force;
+        assert!((mass * mean.x / 1e-5 / force - 1.0).abs() < 1e-6, "{lo} to {hi}: {mean}");
+        assert!((inertia * spin / 1e-5 - moment).abs() < 1e-6, "{lo} to {hi}: {spin}");
+    }
 }

@@ -7,7 +7,7 @@ use super::broken_skin;
 use super::face_area::{check_area, check_is_side, loaded_area};
 use super::field::VectorField;
 use super::load::{self, DeadLoad};
-use super::on_rigid::arms_of;
+use super::on_rigid::{arms_of, face_part};
 use super::skin_load::{self, LoadKind, LoadedSurface, skins_of};
 use crate::plugin::{Plugin, Selection, SetupError, SimBuilder};
 use crate::scene::{Expression, PerAxis, Select};
@@ -17,8 +17,8 @@ use crate::world::BodyId;
 const LABEL: &str = "traction";
 
 /// Loads a surface with a force per reference area that keeps its direction (a dead load). It acts on the
-/// surface itself, a `face` or `surface` of a solid or rigid body whose shape is known; else on the selected
-/// particles, in equal shares of the loaded area.
+/// surface itself, a `face` or `surface` of a solid or a `face` of a rigid body, whose shape is known, up to
+/// the border of `within`; else on the selected particles, in equal shares of the loaded area.
 ///
 /// A load that jumps makes the body swing; for a static answer let it grow smoothly, such as
 /// `"1e5*smoothstep(t/0.01)"`, over several periods of the slowest oscillation, or use `local_damping`.
@@ -75,11 +75,15 @@ fn on_particles(
     if area.is_none() {
         selection.parts.iter().try_for_each(|(id, rows)| check_is_side(select, *id, rows, sim))?;
     }
-    let share = |(id, rows): &(BodyId, Vec<u32>)| match area {
-        Some(area) => vec![area / selection.len() as f64; rows.len()],
-        None => vec![loaded_area(select, sim.body(*id), rows) / rows.len() as f64; rows.len()],
+    let share = |(id, rows): &(BodyId, Vec<u32>)| {
+        let each = match (area, face_part(select, *id, sim)?) {
+            (Some(area), _) => area / selection.len() as f64,
+            (None, Some(part)) => part.area / rows.len() as f64,
+            (None, None) => loaded_area(select, sim.body(*id), rows) / rows.len() as f64,
+        };
+        Ok(vec![each; rows.len()])
     };
-    let shares = selection.parts.iter().map(share).collect();
-    let arms = arms_of(select, selection, sim);
+    let shares = selection.parts.iter().map(share).collect::<Result<_, SetupError>>()?;
+    let arms = arms_of(select, selection, sim)?;
     Ok(DeadLoad { name: Traction::NAME, field, shares, arms })
 }

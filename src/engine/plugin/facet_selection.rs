@@ -4,8 +4,9 @@ use glam::DVec3;
 
 use super::builder::SimBuilder;
 use super::error::SetupError;
+use super::loaded_facet::LoadedFacet;
 use crate::scene::{Select, SurfacePart};
-use crate::shapes::{Facets, Region};
+use crate::shapes::{Facets, Region, Shape};
 use crate::world::BodyId;
 
 /// How far a facet may be from a plane or a surface that it is on, over the spacing.
@@ -23,22 +24,50 @@ pub(crate) fn facets_of(
     facets: &Facets,
     sim: &SimBuilder<'_>,
 ) -> Result<Vec<u32>, SetupError> {
-    let region_of = |shape: &crate::shapes::Shape, path: &str| {
-        shape.region(sim.dimension(), sim.folder(), path).map_err(|error| {
-            SetupError::parameter(
-                error.path.clone(),
-                error.message(),
-                "give a shape of the scene's dimension",
-            )
-        })
-    };
-    let within = select.within.as_ref().map(|shape| region_of(shape, "on.within")).transpose()?;
+    let mut chosen = facets_on(select, id, facets, sim)?;
+    if let Some(within) = within(select, sim)? {
+        chosen.retain(|&facet| within.contains(facets.center(facet as usize)));
+    }
+    Ok(chosen)
+}
+
+/// The facets of a body on which a load acts, each with the part that is `within`: a load ends where the scene
+/// says, not at the next facet.
+pub(crate) fn loaded_facets(
+    select: &Select,
+    id: BodyId,
+    facets: &Facets,
+    sim: &SimBuilder<'_>,
+) -> Result<Vec<LoadedFacet>, SetupError> {
+    let chosen = facets_on(select, id, facets, sim)?;
+    let within = within(select, sim)?;
+    let loaded = chosen.into_iter().filter_map(|facet| LoadedFacet::new(facet, facets, within.as_deref()));
+    Ok(loaded.collect())
+}
+
+fn within(select: &Select, sim: &SimBuilder<'_>) -> Result<Option<Box<dyn Region>>, SetupError> {
+    select.within.as_ref().map(|shape| region_of(shape, "on.within", sim)).transpose()
+}
+
+fn region_of(shape: &Shape, path: &str, sim: &SimBuilder<'_>) -> Result<Box<dyn Region>, SetupError> {
+    shape.region(sim.dimension(), sim.folder(), path).map_err(|error| {
+        SetupError::parameter(error.path.clone(), error.message(), "give a shape of the scene's dimension")
+    })
+}
+
+/// The facets of the `surface` or the `face` of a selection.
+fn facets_on(
+    select: &Select,
+    id: BodyId,
+    facets: &Facets,
+    sim: &SimBuilder<'_>,
+) -> Result<Vec<u32>, SetupError> {
     let of = match &select.surface {
-        Some(SurfacePart::Of(shape)) => Some(region_of(shape, "on.surface[0]")?),
+        Some(SurfacePart::Of(shape)) => Some(region_of(shape, "on.surface[0]", sim)?),
         _ => None,
     };
     let body = sim.body(id);
-    let own = region_of(&sim.scene().bodies[id.0].shape, "shape")?;
+    let own = region_of(&sim.scene().bodies[id.0].shape, "shape", sim)?;
     let tolerance = ON * body.spacing;
     let chosen = |facet: &u32| {
         let center = facets.center(*facet as usize);
@@ -58,7 +87,7 @@ pub(crate) fn facets_of(
             let plane = if sign > 0.0 { body.bounds.max[axis] } else { body.bounds.min[axis] };
             (center[axis] - plane).abs() < EXACT * body.spacing && sign * normal[axis] > 1.0 - EXACT
         });
-        on_surface && on_face && within.as_ref().is_none_or(|region| region.contains(center))
+        on_surface && on_face
     };
     Ok((0..facets.corners.len() as u32).filter(chosen).collect())
 }

@@ -4,6 +4,7 @@ mod builder;
 mod error;
 mod facet_selection;
 mod handed;
+mod loaded_facet;
 mod offers;
 mod plan;
 mod prescription;
@@ -15,8 +16,9 @@ mod traits;
 
 pub use builder::SimBuilder;
 pub use error::SetupError;
-pub(crate) use facet_selection::facets_of;
+pub(crate) use facet_selection::{facets_of, loaded_facets};
 pub use handed::ForBodies;
+pub(crate) use loaded_facet::LoadedFacet;
 pub use offers::{BodyKind, Offer};
 pub use plan::{BodyPlan, HeldSide};
 pub use prescription::{MotionOfPlace, Prescription};

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::body::{RigidBodies, RigidBody, RigidParts, RigidState};
 use super::constraint::{Constraint, DrivenBody, DrivenRotation, HalvedBody, RotationConstraint};
-use super::inertia::MassProperties;
+use super::inertia::{MassProperties, Tilt};
 use super::nodes::{Nodes, RigidNode};
 use super::rotation::Inertia;
 use super::systems;
@@ -278,11 +278,12 @@ fn start(bodies: &mut RigidBodies, spins: &[DVec3], setup: &mut Setup<'_>) -> Re
         let total: f64 = sum_over_blocks(&mass[rows.clone()], &|_, mass: &[Mass]| {
             mass.iter().map(|mass| mass.0).sum::<f64>()
         });
+        let tilt = Tilt::new(rows.clone().map(|row| (mass[row].0, x[row].0)), body.state.center);
         let mut momentum = DVec3::ZERO;
         let mut turning = DVec3::ZERO;
         for row in rows.clone() {
             let own = &mut mass[row].0;
-            *own *= body.mass / total;
+            *own *= body.mass / total * tilt.at(x[row].0);
             momentum += *own * velocity[row].0;
             turning += (x[row].0 - body.state.center).cross(*own * velocity[row].0);
         }

@@ -1,11 +1,11 @@
-//! Mass, centre and inertia of a body from its shape, or from its particles.
+//! Mass, centre and inertia of a body from its shape.
 
 use glam::DVec3;
 
 use crate::linalg::Sym3;
 use crate::plugin::BodyPlan;
 use crate::scene::Dimension;
-use crate::shapes::{Moments, Shape, Surface};
+use crate::shapes::{Moments, Shape, Surface, counted_moments};
 
 /// Mass, centre and inertia of a rigid body.
 #[derive(Clone, Copy, Debug)]
@@ -21,19 +21,69 @@ pub(super) struct MassProperties {
 }
 
 impl MassProperties {
-    /// Where the shape has no closed form, each particle counts as the square or cube of its volume.
+    /// Where the shape has no closed form, its moments are counted; an unbounded one has those of its
+    /// particles.
     pub fn new(body: &BodyPlan, surface: &dyn Surface, dimension: Dimension) -> Self {
         let density = body.material.density;
         let volume: f64 = body.sites.iter().map(|site| site.volume).sum();
-        let moments = surface.moments().unwrap_or_else(|| of_particles(body, volume, dimension));
+        let moments = match surface.moments() {
+            Some(moments) => moments,
+            None if surface.bounds().is_bounded() => counted_moments(surface, dimension.count()),
+            None => of_particles(body, volume, dimension),
+        };
+        let masses = body.sites.iter().map(|site| (density * site.volume, site.position));
+        let tilt = Tilt::new(masses.clone(), moments.center);
         let mut points = Sym3::ZERO;
-        for site in &body.sites {
-            points += about(&Sym3::dyad(site.position - moments.center)) * (density * site.volume);
+        for (mass, place) in masses {
+            points += about(&Sym3::dyad(place - moments.center)) * (mass * tilt.at(place));
         }
         // The mass is that of the particles: files of particles say their volumes themselves.
         let mass = density * volume;
         let tensor = about(&moments.second) * (mass / moments.volume);
         Self { mass, center: moments.center, tensor, points }
+    }
+}
+
+/// Distance of the centre of the particles from that of the body, over their radius of gyration, below which
+/// it is round-off.
+const ROUND_OFF: f64 = 1e-9;
+/// Largest change of the mass of a particle.
+const LARGEST_TILT: f64 = 0.5;
+
+/// A factor on the masses of particles, linear in their places, with which their mass centre is that of the
+/// body: their weight then has no torque about it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tilt {
+    middle: DVec3,
+    slope: DVec3,
+}
+
+impl Tilt {
+    /// For particles of these masses, kg, at these places, m.
+    pub fn new(masses: impl Iterator<Item = (f64, DVec3)> + Clone, center: DVec3) -> Self {
+        let total: f64 = masses.clone().map(|(mass, _)| mass).sum();
+        let middle = masses.clone().map(|(mass, place)| mass * place).sum::<DVec3>() / total;
+        let none = Self { middle: center, slope: DVec3::ZERO };
+        let mut second = Sym3::ZERO;
+        for (mass, place) in masses.clone() {
+            second += Sym3::dyad(place - middle) * mass;
+        }
+        let gyration = (second.trace() / total).sqrt();
+        let aside = center - middle;
+        // Not so where there are no particles, or all in one place.
+        let is_aside = aside.length() > ROUND_OFF * gyration;
+        if !is_aside {
+            return none;
+        }
+        // Particles in a plane, as in two dimensions, have no second moment across it.
+        let regular = second + Sym3::IDENTITY * (ROUND_OFF * second.trace());
+        let tilt = Self { middle, slope: regular.inverse() * (total * aside) };
+        let is_small = |(_, place): (f64, DVec3)| (tilt.at(place) - 1.0).abs() <= LARGEST_TILT;
+        if masses.clone().all(is_small) { tilt } else { none }
+    }
+
+    pub fn at(&self, place: DVec3) -> f64 {
+        1.0 + self.slope.dot(place - self.middle)
     }
 }
 

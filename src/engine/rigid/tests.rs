@@ -175,3 +175,41 @@ fn a_top_without_torque_precesses_as_euler_says() {
     let angle = axis.truncate().length() / cone;
     assert!(angle < 0.01, "{angle} of 62.8 rad");
 }
+
+/// The motion of a body after 0.1 s of free fall, m/s and rad/s.
+fn fallen(shape: &str, conditions: &str) -> (f64, f64) {
+    let text = format!(
+        r#"(dimension: Two, gravity: (0.0, -10.0), materials: {{"wood": NeoHookean(density: 500.0, young: 1e7, poisson: 0.3)}},
+            bodies: [(name: "b", material: "wood", shape: {shape}, spacing: 0.02, formulation: Rigid)],
+            conditions: [{conditions}], time: (end: 0.1))"#
+    );
+    let (scene, source) = parse(Source::new("fall.ron", text)).unwrap_or_else(|e| panic!("{e}"));
+    let mut sim = build(&scene, &source, &Registry::standard()).unwrap_or_else(|e| panic!("{e}"));
+    sim.run(|_| true).expect("a run");
+    let bodies = sim.resources().get::<RigidBodies>();
+    let body = bodies.iter().next().expect("a body");
+    (body.state.velocity.y, body.state.angular_velocity.z)
+}
+
+#[test]
+fn a_body_in_free_fall_does_not_begin_to_turn_however_coarsely_it_is_filled() {
+    for shape in [
+        "Polygon(points: [(0.0, 0.0), (0.2, 0.0), (0.0, 0.1)])",
+        "Polygon(points: [(0.0, 0.0), (0.21, 0.0), (0.21, 0.03), (0.05, 0.03), (0.05, 0.17), (0.0, 0.17)])",
+        "Intersection([Sphere(center: (0.0, 0.0), radius: 0.1), Box(min: (0.0, -1.0), max: (1.0, 1.0))])",
+    ] {
+        let (velocity, spin) = fallen(shape, "");
+        assert!((velocity + 1.0).abs() < 1e-9 && spin.abs() < 1e-9, "{shape}: {velocity} {spin}");
+    }
+}
+
+#[test]
+fn initial_velocities_of_a_rotation_give_a_body_the_velocity_of_its_centre() {
+    let shape =
+        "Intersection([Sphere(center: (0.0, 0.0), radius: 0.1), Box(min: (0.0, -1.0), max: (1.0, 1.0))])";
+    let turn = r#"InitialVelocity(on: Select(body: "b"), value: ("-10*y", "10*x"))"#;
+    let (velocity, spin) = fallen(shape, turn);
+    // The centre of half a disc is 4 r / (3 pi) from its side.
+    let expected = 10.0 * 4.0 * 0.1 / (3.0 * std::f64::consts::PI) - 1.0;
+    assert!((velocity - expected).abs() < 1e-3 && (spin - 10.0).abs() < 1e-9, "{velocity} {spin}");
+}

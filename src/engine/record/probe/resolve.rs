@@ -11,7 +11,7 @@ use super::relative::RelativeGauge;
 use super::torque::TorqueGauge;
 use super::wear;
 use crate::fields::FieldTable;
-use crate::plugin::{Selection, SimBuilder};
+use crate::plugin::{BodyKind, Selection, SimBuilder};
 use crate::scene::{self, Dimension, Problem, Quantity, Select};
 use crate::world::{BodyId, BodySet};
 
@@ -47,6 +47,11 @@ impl ResolvedProbe {
         }
         if let Some(gauge) = wear::resolve(k, probe, on, sim)? {
             return Ok(Self::new(probe, Gauge::Measure(gauge), sim));
+        }
+        if matches!(probe.quantity, Quantity::Force | Quantity::Torque | Quantity::Moment { .. })
+            && probe.on.as_ref().is_some_and(|on| on.surface.is_none())
+        {
+            refuse_part_of_rigid(k, &on()?, sim)?;
         }
         let gauge = match field_name(&probe.quantity) {
             None if probe.quantity == Quantity::Torque => {
@@ -130,6 +135,24 @@ fn energies(k: usize, on: Option<&Select>, sim: &SimBuilder<'_>) -> Result<Energ
         return Err(vec![problem.help("select by `body` alone, or leave `on` out for all bodies")]);
     }
     Ok(EnergyColumns::of_bodies(selection.parts.iter().map(|(id, _)| named(*id)).collect()))
+}
+
+/// Forces on a rigid body act on all of it: those of its particles follow from its acceleration, and their sum
+/// over a part is not what acts there.
+fn refuse_part_of_rigid(k: usize, selection: &Selection, sim: &SimBuilder<'_>) -> Result<(), Vec<Problem>> {
+    let is_part = |(id, rows): &&(BodyId, Vec<u32>)| {
+        sim.body(*id).kind == BodyKind::Rigid && rows.len() < sim.body(*id).sites.len()
+    };
+    let Some((id, rows)) = selection.parts.iter().find(is_part) else { return Ok(()) };
+    let body = sim.body(*id);
+    let message = format!(
+        "the selection holds {} of the {} particles of the rigid body `{}`, and forces act on a rigid body as a whole",
+        rows.len(),
+        body.sites.len(),
+        body.name
+    );
+    let help = "select all of the body; a part whose force is wanted is a body of its own";
+    Err(vec![Problem::at_path(format!("probes[{k}].on"), message).help(help)])
 }
 
 fn select(k: usize, on: &Select, sim: &SimBuilder<'_>) -> Result<Selection, Vec<Problem>> {
