@@ -30,6 +30,18 @@ impl NeighborList {
         Ok(list)
     }
 
+    /// Removes all rows.
+    pub fn clear(&mut self) {
+        self.offsets.truncate(1);
+        self.indices.clear();
+    }
+
+    /// Adds a row behind the others.
+    pub fn push_row(&mut self, row: impl IntoIterator<Item = u32>) {
+        self.indices.extend(row);
+        self.offsets.push(self.indices.len());
+    }
+
     /// Removes the pairs (i, j) for which `keep` is false.
     pub fn retain(&mut self, keep: impl Fn(usize, u32) -> bool) {
         let mut kept = 0;
@@ -87,9 +99,9 @@ impl NeighborList {
         self.indices.iter_mut().for_each(|j| *j += by);
     }
 
-    /// Renumbers the neighbours.
-    pub fn renumber(&mut self, number: impl Fn(u32) -> u32) {
-        self.indices.iter_mut().for_each(|j| *j = number(*j));
+    /// Renumbers the neighbours in the rows from `first` on.
+    pub fn renumber_from(&mut self, first: usize, number: impl Fn(u32) -> u32) {
+        self.indices[self.offsets[first]..].iter_mut().for_each(|j| *j = number(*j));
     }
 
     /// Transposes the list: row k of `other` contains the rows of this list, ascending, that contain the k-th

@@ -14,7 +14,8 @@ use std::ops::Range;
 
 /// Rows per block, found in sequence by one thread.
 const BLOCK: usize = 128;
-/// Blocks per wave.
+/// Blocks per wave, for each thread and at most: the rows of a wave are in memory twice.
+const WAVE_OF_THREAD: usize = 16;
 const WAVE: usize = 1024;
 
 /// Buffers of one wave, reused from one build to the next.
@@ -51,7 +52,13 @@ pub(super) struct Query<'a> {
     pub halves: Option<&'a [DVec3]>,
     /// The targets whose rows are built, ascending; `None` for all.
     pub only: Option<&'a [Range<usize>]>,
+    /// Takes more out of the rows.
+    pub sift: Option<Sift<'a>>,
 }
+
+/// Takes neighbours out of consecutive rows: called with the number of the first, the ends of all, and the
+/// concatenated rows, to be written in place.
+pub type Sift<'a> = &'a (dyn Fn(usize, &mut [usize], &mut [u32]) + Sync);
 
 /// Order of a row.
 #[derive(Clone, Copy)]
@@ -70,7 +77,7 @@ impl Query<'_> {
         self.only.is_none_or(|only| only.iter().any(|rows| rows.contains(&i)))
     }
 
-    /// Replaces the content of the list.
+    /// Adds the rows behind those of the list, over what its indices hold beyond them.
     pub fn fill(&self, buffers: &mut Buffers, list: &mut NeighborList) {
         let uniform =
             matches!(self.targets.support, SupportRadii::Uniform(_)) && self.grid.supports.is_empty();
@@ -92,20 +99,23 @@ impl Query<'_> {
     ) {
         let rows = self.targets.positions.len();
         let blocks = &mut buffers.blocks;
-        blocks.resize_with(blocks.len().max(rows.div_ceil(BLOCK).min(WAVE)), RowBlock::default);
-        list.offsets.clear();
-        list.offsets.push(0);
+        let of_wave = (WAVE_OF_THREAD * rayon::current_num_threads()).min(WAVE);
+        blocks.resize_with(blocks.len().max(rows.div_ceil(BLOCK).min(of_wave)), RowBlock::default);
+        let (rows_before, pairs_before) = (list.rows(), list.offsets[list.rows()]);
         list.offsets.reserve(rows);
-        for first in (0..rows).step_by(BLOCK * WAVE) {
-            let last = (first + BLOCK * WAVE).min(rows);
+        for first in (0..rows).step_by(BLOCK * of_wave) {
+            let last = (first + BLOCK * of_wave).min(rows);
             let wave = &mut blocks[..(last - first).div_ceil(BLOCK)];
             wave.par_iter_mut().enumerate().for_each(|(b, block)| {
                 let start = first + b * BLOCK;
                 let rows = start..(start + BLOCK).min(last);
-                run_hot(BlockRows::<D, PERIODIC, UNIFORM, BOXES> { query: self, rows, block });
+                run_hot(BlockRows::<D, PERIODIC, UNIFORM, BOXES> { query: self, rows, block: &mut *block });
+                if let Some(sift) = self.sift {
+                    sift(start, &mut block.ends, &mut block.found);
+                }
             });
 
-            let before = list.offsets[first];
+            let before = list.offsets[rows_before + first];
             let mut total = before;
             for block in &*wave {
                 list.offsets.extend(block.ends.iter().map(|end| total + end));
@@ -116,7 +126,8 @@ impl Query<'_> {
                     // A list that has outgrown its capacity gets a reserve, so that further growth seldom
                     // allocates.
                     let spare = if list.indices.capacity() == 0 { 1.02 } else { 1.25 };
-                    let expected = (total as f64 / last as f64 * rows as f64 * spare) as usize;
+                    let found = (total - pairs_before) as f64 / last as f64;
+                    let expected = pairs_before + (found * rows as f64 * spare) as usize;
                     list.indices.reserve_exact(expected.max(total) - list.indices.len());
                 }
                 list.indices.resize(total, 0);
@@ -130,7 +141,7 @@ impl Query<'_> {
                 part.copy_from_slice(&block.found[..part.len()]);
             });
         }
-        list.indices.truncate(list.offsets[rows]);
+        list.indices.truncate(list.offsets[rows_before + rows]);
     }
 }
 

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::grid::{Grid, GridBounds};
 use super::periodic::AXIS_NAMES;
-use super::rows::{Buffers, Order, Query};
+use super::rows::{Buffers, Order, Query, Sift};
 use super::{Cloud, NeighborError, NeighborList, Periodic, PointBounds, SupportRadii};
 
 /// Neighbour search with persistent buffers: it does not allocate from the second build of similar size on.
@@ -46,6 +46,15 @@ struct SearchTask<'a> {
     halves: Option<&'a [DVec3]>,
     /// The targets whose rows are built, ascending; `None` for all.
     only: Option<&'a [Range<usize>]>,
+    /// Takes more out of the rows.
+    sift: Option<Sift<'a>>,
+}
+
+impl<'a> SearchTask<'a> {
+    /// All neighbours of points.
+    fn of_points(same_set: bool, groups: Option<&'a [u32]>, skin: f64, periodic: &'a Periodic) -> Self {
+        Self { same_set, skin, groups, periodic, halves: None, only: None, sift: None }
+    }
 }
 
 /// Boxes whose neighbours are searched.
@@ -74,8 +83,27 @@ impl NeighborSearch {
         periodic: &Periodic,
         list: &mut NeighborList,
     ) -> Result<(), NeighborError> {
-        let wanted = SearchTask { same_set: true, skin, groups: None, periodic, halves: None, only: None };
+        let wanted = SearchTask::of_points(true, None, skin, periodic);
         self.build(cloud, cloud, wanted, list)
+    }
+
+    /// Lists the neighbours of the first particles of a cloud in the whole cloud, behind the rows that `list`
+    /// has. Otherwise as [`NeighborSearch::within`].
+    ///
+    /// # Errors
+    /// See [`NeighborError`]; `list` is then unchanged.
+    pub fn append(
+        &mut self,
+        first: FirstOfCloud<'_>,
+        skin: f64,
+        periodic: &Periodic,
+        list: &mut NeighborList,
+    ) -> Result<(), NeighborError> {
+        let wanted = SearchTask::of_points(true, None, skin, periodic);
+        let targets = first.cloud.first(first.targets);
+        let radius = self.grid_of(targets, first.cloud, wanted)?;
+        self.fill(targets, radius, wanted, list);
+        Ok(())
     }
 
     /// Lists the neighbours of the first particles of a cloud in the whole cloud. A row is ordered by the
@@ -92,8 +120,7 @@ impl NeighborSearch {
         periodic: &Periodic,
         list: &mut NeighborList,
     ) -> Result<(), NeighborError> {
-        let wanted =
-            SearchTask { same_set: true, skin, groups: Some(groups), periodic, halves: None, only: None };
+        let wanted = SearchTask::of_points(true, Some(groups), skin, periodic);
         self.build(first.cloud.first(first.targets), first.cloud, wanted, list)
     }
 
@@ -110,7 +137,7 @@ impl NeighborSearch {
         periodic: &Periodic,
         list: &mut NeighborList,
     ) -> Result<(), NeighborError> {
-        let wanted = SearchTask { same_set: false, skin, groups: None, periodic, halves: None, only: None };
+        let wanted = SearchTask::of_points(false, None, skin, periodic);
         self.build(targets, sources, wanted, list)
     }
 
@@ -130,9 +157,9 @@ impl NeighborSearch {
     ) -> Result<(), NeighborError> {
         let targets = Cloud::uniform(positions, self.sources.largest_support);
         targets.check("target")?;
-        let wanted =
-            SearchTask { same_set: false, skin, groups: Some(groups), periodic, halves: None, only: None };
+        let wanted = SearchTask::of_points(false, Some(groups), skin, periodic);
         let radius = self.radius(targets, wanted)?;
+        list.offsets.truncate(1);
         self.fill(targets, radius, wanted, list);
         Ok(())
     }
@@ -142,12 +169,12 @@ impl NeighborSearch {
     /// # Errors
     /// See [`NeighborError`].
     pub fn sort(&mut self, sources: Cloud<'_>, skin: f64, periodic: &Periodic) -> Result<(), NeighborError> {
-        let wanted = SearchTask { same_set: true, skin, groups: None, periodic, halves: None, only: None };
+        let wanted = SearchTask::of_points(true, None, skin, periodic);
         self.grid_of(sources.first(0), sources, wanted).map(|_| ())
     }
 
-    /// Lists, for each box, the sources of the previous search within the support radius plus the skin.
-    /// Otherwise as [`NeighborSearch::of_others`].
+    /// Lists, for each box, the sources of the previous search within the support radius plus the skin that
+    /// `sift` leaves. Otherwise as [`NeighborSearch::of_others`].
     ///
     /// # Errors
     /// See [`NeighborError`].
@@ -156,15 +183,16 @@ impl NeighborSearch {
         boxes: Boxes<'_>,
         skin: f64,
         periodic: &Periodic,
+        sift: Sift<'_>,
         list: &mut NeighborList,
     ) -> Result<(), NeighborError> {
         let mut buffers = std::mem::take(&mut self.buffers);
-        let done = self.of_boxes_with(&mut buffers, boxes, skin, periodic, list);
+        let done = self.of_boxes_with(&mut buffers, boxes, skin, periodic, Some(sift), list);
         self.buffers = buffers;
         done
     }
 
-    /// [`NeighborSearch::of_boxes`] with temporary buffers, which leaves the search unchanged.
+    /// All that [`NeighborSearch::of_boxes`] finds, with temporary buffers, which leaves the search unchanged.
     ///
     /// # Errors
     /// See [`NeighborError`].
@@ -175,7 +203,7 @@ impl NeighborSearch {
         periodic: &Periodic,
         list: &mut NeighborList,
     ) -> Result<(), NeighborError> {
-        self.of_boxes_with(&mut Buffers::default(), boxes, skin, periodic, list)
+        self.of_boxes_with(&mut Buffers::default(), boxes, skin, periodic, None, list)
     }
 
     fn of_boxes_with(
@@ -184,6 +212,7 @@ impl NeighborSearch {
         Boxes { centers, halves, wanted, groups }: Boxes<'_>,
         skin: f64,
         periodic: &Periodic,
+        sift: Option<Sift<'_>>,
         list: &mut NeighborList,
     ) -> Result<(), NeighborError> {
         let targets = Cloud::uniform(centers, self.sources.largest_support);
@@ -194,8 +223,10 @@ impl NeighborSearch {
             periodic,
             halves: Some(halves),
             only: Some(wanted),
+            sift,
         };
         let radius = self.radius(targets, wanted)?;
+        list.offsets.truncate(1);
         self.query(targets, radius, wanted).fill(buffers, list);
         Ok(())
     }
@@ -208,6 +239,7 @@ impl NeighborSearch {
         list: &mut NeighborList,
     ) -> Result<(), NeighborError> {
         let radius = self.grid_of(targets, sources, wanted)?;
+        list.offsets.truncate(1);
         self.fill(targets, radius, wanted, list);
         Ok(())
     }
@@ -268,7 +300,7 @@ impl NeighborSearch {
         Ok(radius)
     }
 
-    /// Lists the neighbours of the targets in the grid.
+    /// Lists the neighbours of the targets in the grid, behind the rows that there are.
     fn fill(&mut self, targets: Cloud<'_>, radius: f64, wanted: SearchTask<'_>, list: &mut NeighborList) {
         let mut buffers = std::mem::take(&mut self.buffers);
         self.query(targets, radius, wanted).fill(&mut buffers, list);
@@ -276,7 +308,7 @@ impl NeighborSearch {
     }
 
     fn query<'a>(&'a self, targets: Cloud<'a>, radius: f64, wanted: SearchTask<'a>) -> Query<'a> {
-        let SearchTask { same_set, skin, groups, periodic, halves, only } = wanted;
+        let SearchTask { same_set, skin, groups, periodic, halves, only, sift } = wanted;
         let GridSources { count, bounds, .. } = self.sources;
         let more = if same_set { bounds } else { targets.bounds() };
         let solid = bounds.low.z.min(more.low.z) < bounds.high.z.max(more.high.z);
@@ -285,7 +317,19 @@ impl NeighborSearch {
             Some(ends) if ends.iter().all(|&end| end as usize >= count) => Order::Cells,
             Some(ends) => Order::Groups(ends),
         };
-        Query { grid: &self.grid, targets, same_set, radius, skin, periodic, solid, order, halves, only }
+        Query {
+            grid: &self.grid,
+            targets,
+            same_set,
+            radius,
+            skin,
+            periodic,
+            solid,
+            order,
+            halves,
+            only,
+            sift,
+        }
     }
 }
 
@@ -332,5 +376,14 @@ mod tests {
             row.sort_unstable();
             assert_eq!(row, between.row(i));
         }
+
+        // Rows are added behind others.
+        let mut both = all.clone();
+        search
+            .append(FirstOfCloud { cloud, targets: 250 }, 0.05, &Periodic::NONE, &mut both)
+            .expect("a list");
+        assert_eq!(both.rows(), 650);
+        assert!((0..400).all(|i| both.row(i) == all.row(i)));
+        assert!((0..250).all(|i| both.row(400 + i) == all.row(i)));
     }
 }

@@ -56,7 +56,8 @@ pub(super) fn run(
         stresses: &mut stresses[rows.clone()],
         energy: &mut *energy,
     };
-    let (divergence, support, offsets) = (kernels[k].divergence, lists.bodies[k].support, &lists.offsets[..]);
+    let (divergence, support, offsets) =
+        (kernels[k].divergence, lists.bodies[k].support, lists.pairs.offsets());
     let sum = for_each_own_block(block, sums, &|first, block: ControlBlock<'_>| {
         let first = rows.start + first;
         let pairs = ControlPairs { support, offsets, near, points, carried, across: control.across };

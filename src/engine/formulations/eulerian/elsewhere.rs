@@ -23,23 +23,19 @@ impl EulerianLists {
         reference: &[DVec3],
         deformation: &[DeformationGradient],
     ) {
-        let Self { bodies, ghosts, offsets, neighbors, uncut, .. } = self;
+        let Self { bodies, ghosts, pairs, uncut, .. } = self;
         if bodies.iter().all(|body| !body.touches_itself) {
             return;
         }
-        neighbors.clear();
-        let (starts, all) = (&uncut.0, &uncut.1);
+        pairs.clear();
         for body in bodies {
             let near = ELSEWHERE * body.support;
             for i in body.rows.clone() {
-                offsets[i] = neighbors.len();
-                let row = &all[starts[i]..starts[i + 1]];
-                if !body.touches_itself {
-                    neighbors.extend_from_slice(row);
-                    continue;
-                }
-                neighbors.extend(row.iter().copied().filter(|&j| {
+                pairs.push_row(uncut.row(i).iter().copied().filter(|&j| {
                     let j = j as usize;
+                    if !body.touches_itself {
+                        return true;
+                    }
                     let before = ghosts.pair(reference, i, j).length_squared();
                     if before <= near * near {
                         return true;
@@ -52,7 +48,6 @@ impl EulerianLists {
                     before <= ELSEWHERE * ELSEWHERE * own.max(others)
                 }));
             }
-            offsets[body.rows.end] = neighbors.len();
         }
     }
 }

@@ -63,7 +63,7 @@ impl PlaneOrSpace for EulerianForceRows<'_> {
         for (k, force) in self.force.iter_mut().enumerate() {
             let i = self.first + k;
             let (place, own) = (points[i].place, &stresses[i]);
-            let (neighbors, weights) = near.row(lists.offsets[i], i);
+            let (neighbors, weights) = near.row(lists.pairs.offsets()[i], i);
             let mut sum = Lanes4::ZERO;
             for n in 0..neighbors.len() {
                 let j = neighbors[n] as usize;

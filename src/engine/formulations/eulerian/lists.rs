@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic};
+use crate::neighbors::{Cloud, FirstOfCloud, NeighborError, NeighborList, NeighborSearch, Periodic};
 use crate::parallel::{BlockSum, Maximum, sum_over_blocks};
 use crate::symmetry::{Ghosts, Repeat};
 use crate::world::BodyId;
@@ -31,16 +31,13 @@ pub(super) struct EulerianLists {
     pub bodies: Vec<EulerianBody>,
     /// The ghosts of pairs within support and skin.
     pub ghosts: Ghosts,
-    /// Where the neighbours of each row start.
-    pub offsets: Vec<usize>,
-    /// Packed rows of the neighbours, ascending.
-    pub neighbors: Vec<u32>,
-    /// Both before particles from elsewhere are left out, where a body touches itself.
-    pub uncut: (Vec<usize>, Vec<u32>),
+    /// Packed rows of the neighbours of each row, ascending.
+    pub pairs: NeighborList,
+    /// The same before particles from elsewhere are left out, where a body touches itself.
+    pub uncut: NeighborList,
     /// Places that the lists were built from, m.
     built_from: Vec<DVec3>,
     search: NeighborSearch,
-    list: NeighborList,
     places: Vec<DVec3>,
 }
 
@@ -70,9 +67,7 @@ impl EulerianLists {
     fn build(&mut self, position: &[DVec3]) -> Result<(), (BodyId, NeighborError)> {
         self.built_from.clear();
         self.ghosts = Ghosts::new(position.len());
-        self.offsets.clear();
-        self.offsets.push(0);
-        self.neighbors.clear();
+        self.pairs.clear();
         for body in &self.bodies {
             let (repeats, reach) = body.repeats_at(&position[body.rows.clone()]);
             let ghost_rows = self.ghosts.add(body.rows.clone(), position, reach, &repeats);
@@ -80,7 +75,8 @@ impl EulerianLists {
             self.places.extend_from_slice(&position[body.rows.clone()]);
             self.places.extend(ghost_rows.clone().map(|row| self.ghosts.place(position, row)));
             let cloud = Cloud::uniform(&self.places, body.support);
-            let found = self.search.within(cloud, SKIN * body.support, &Periodic::NONE, &mut self.list);
+            let first = FirstOfCloud { cloud, targets: body.rows.len() };
+            let found = self.search.append(first, SKIN * body.support, &Periodic::NONE, &mut self.pairs);
             found.map_err(|error| (body.id, error))?;
             // Ghosts have numbers behind those of the real rows of the body.
             let row_of = |number: u32| {
@@ -88,22 +84,19 @@ impl EulerianLists {
                 let ghost = number.checked_sub(body.rows.len());
                 ghost.map_or(body.rows.start + number, |ghost| ghost_rows.start + ghost) as u32
             };
-            for k in 0..body.rows.len() {
-                self.neighbors.extend(self.list.row(k).iter().map(|&number| row_of(number)));
-                self.offsets.push(self.neighbors.len());
-            }
+            self.pairs.renumber_from(body.rows.start, row_of);
         }
         self.built_from.extend_from_slice(position);
         if self.bodies.iter().any(|body| body.touches_itself) {
-            self.uncut.0.clone_from(&self.offsets);
-            self.uncut.1.clone_from(&self.neighbors);
+            self.uncut.clone_from(&self.pairs);
         }
         Ok(())
     }
 
     /// Where the neighbours of some rows lie.
     pub fn of_rows(&self, rows: Range<usize>) -> Range<usize> {
-        self.offsets[rows.start]..self.offsets[rows.end]
+        let offsets = self.pairs.offsets();
+        offsets[rows.start]..offsets[rows.end]
     }
 }
 
@@ -205,7 +198,7 @@ mod tests {
             }
             builds += usize::from(lists.update(&position).expect("lists"));
             for i in 0..position.len() {
-                let row = &lists.neighbors[lists.of_rows(i..i + 1)];
+                let row = lists.pairs.row(i);
                 assert!(row.is_sorted() && close(&position, i).iter().all(|j| row.contains(j)), "row {i}");
             }
         }
@@ -220,7 +213,7 @@ mod tests {
         assert!(lists.ghosts.is_empty());
         position.iter_mut().for_each(|x| x.x -= 3.5);
         assert!(lists.update(&position).expect("lists"));
-        let ghosts = lists.neighbors[lists.of_rows(0..1)].iter().filter(|&&j| j >= 200).count();
+        let ghosts = lists.pairs.row(0).iter().filter(|&&j| j >= 200).count();
         assert!(ghosts > 0 && lists.ghosts.len() >= 30, "{ghosts} of {}", lists.ghosts.len());
     }
 }

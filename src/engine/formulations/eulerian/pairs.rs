@@ -74,7 +74,7 @@ impl HotLoop for FillEulerianPairs<'_> {
             if batch.is_full() {
                 break;
             }
-            let part = lists.offsets[i]..lists.offsets[i] + near.around[i].count as usize;
+            let part = lists.pairs.offsets()[i]..lists.pairs.offsets()[i] + near.around[i].count as usize;
             let neighbors = &near.neighbors[part.clone()];
             let mut slots = batch.add_row(points[i].velocity.0[3], neighbors.len());
             let (fours, rest) = neighbors.as_chunks::<4>();

@@ -260,14 +260,14 @@ fn look_at_reference(packed: &mut EulerianRows, setup: &mut Setup<'_>) -> Result
     for (body, of) in lists.bodies.iter().zip(kernels) {
         let (rows, of_lists) = (body.rows.clone(), lists.of_rows(body.rows.clone()));
         let mut rows = NeighborRows {
-            offsets: &lists.offsets[rows.start..=rows.end],
+            offsets: &lists.pairs.offsets()[rows.start..=rows.end],
             neighbors: &mut near.neighbors[of_lists.clone()],
             weights: &mut near.weights[of_lists.clone()],
             curvatures: &mut near.curvatures[of_lists],
             around: &mut near.around[rows],
         };
         let (kernel, support, first) = (of.kernel, body.support, body.rows.start);
-        let (lists, plane) = (&lists.neighbors[..], *plane);
+        let (lists, plane) = (lists.pairs.indices(), *plane);
         kernel.dispatch(ComputePairs { kernel, support, lists, points, first, plane, rows: &mut rows });
         let free = rows.around.iter().filter(|around| around.inverse_moment == Sym3::ZERO).count();
         let name = &setup.world.body(body.id).name;

@@ -30,12 +30,12 @@ impl SolidPhase for EulerianRows {
     }
 
     fn neighbors(&self, row: usize, f: &mut dyn FnMut(usize, f64)) {
-        let (neighbors, weights) = self.near.row(self.lists.offsets[row], row);
+        let (neighbors, weights) = self.near.row(self.lists.pairs.offsets()[row], row);
         neighbors.iter().zip(weights).for_each(|(&j, &weight)| f(j as usize, weight));
     }
 
     fn holds_together(&self, row: usize, other: usize) -> bool {
-        let (neighbors, _) = self.near.row(self.lists.offsets[row], row);
+        let (neighbors, _) = self.near.row(self.lists.pairs.offsets()[row], row);
         neighbors.iter().any(|&j| self.lists.ghosts.source(j as usize) == other)
     }
 
@@ -46,7 +46,7 @@ impl SolidPhase for EulerianRows {
         mobility: Mobility,
         moving: bool,
     ) -> LocalMotion {
-        let (neighbors, weights) = self.near.row(self.lists.offsets[row], row);
+        let (neighbors, weights) = self.near.row(self.lists.pairs.offsets()[row], row);
         let (points, ghosts) = (&self.points[..], &self.lists.ghosts);
         let sum = RateSum { row, neighbors, weights, points, ghosts, velocity };
         self.fit(row).motion(if moving { run_hot(sum) } else { DMat3::ZERO }, velocity[row], mobility)

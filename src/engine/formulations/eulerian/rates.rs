@@ -90,9 +90,9 @@ fn advance(
         let own: &mut [DMat3] = bytemuck::cast_slice_mut(&mut deformation[rows.clone()]);
         for_each_own_block(&mut *own, &mut Vec::new(), &|first, deformation: &mut [DMat3]| {
             let first = rows.start + first;
-            let offsets = &lists.offsets[first..=first + deformation.len()];
+            let offsets = &lists.pairs.offsets()[first..=first + deformation.len()];
             let (kernel, support) = (of.kernel, body.support);
-            let (neighbors, plane) = (&lists.neighbors[..], *plane);
+            let (neighbors, plane) = (lists.pairs.indices(), *plane);
             kernel.dispatch(Advance {
                 kernel,
                 support,

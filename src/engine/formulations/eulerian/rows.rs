@@ -62,7 +62,7 @@ impl EulerianRows {
         reference: &[DVec3],
     ) -> Result<(), (crate::world::BodyId, crate::neighbors::NeighborError)> {
         if self.lists.update(position)? {
-            let pairs = self.lists.neighbors.len();
+            let pairs = self.lists.pairs.pairs();
             self.near.neighbors.resize(pairs, 0);
             self.near.weights.resize(pairs, 0.0);
             self.near.curvatures.resize(pairs, 0.0);

@@ -44,7 +44,7 @@ fn offset(packed: &EulerianRows, body: &EulerianBody, row: usize) -> f64 {
 fn is_one_sided(packed: &EulerianRows, row: usize) -> bool {
     let Some(inward) = packed.near.around[row].first_moment.try_normalize() else { return false };
     let place = |row: usize| packed.points[row].place.xyz();
-    let (neighbors, _) = packed.near.row(packed.lists.offsets[row], row);
+    let (neighbors, _) = packed.near.row(packed.lists.pairs.offsets()[row], row);
     neighbors.iter().all(|&j| {
         let x_ij = place(j as usize) - place(row);
         -x_ij.dot(inward) < CONE * x_ij.length()

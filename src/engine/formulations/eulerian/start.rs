@@ -25,7 +25,7 @@ pub(super) fn fit_gradients(
         let h = of.kernel.smoothing_length(body.support);
         for i in body.rows.clone() {
             let mut fit = AffineFit::new(if *plane { 2 } else { 3 });
-            for &j in &lists.neighbors[lists.of_rows(i..i + 1)] {
+            for &j in lists.pairs.row(i) {
                 let j = j as usize;
                 let x_ij = ghosts.pair(reference, i, j);
                 let weight = volume[ghosts.source(j)] * of.kernel.pair_weight(x_ij.length(), h);

@@ -153,7 +153,7 @@ impl Stress {
         let of_lists = lists.of_rows(rows.clone());
         let own = OwnRows {
             near: NeighborRows {
-                offsets: &lists.offsets[rows.start..=rows.end],
+                offsets: &lists.pairs.offsets()[rows.start..=rows.end],
                 neighbors: &mut near.neighbors[of_lists.clone()],
                 weights: &mut near.weights[of_lists.clone()],
                 curvatures: &mut near.curvatures[of_lists],
@@ -166,7 +166,7 @@ impl Stress {
         let pass = StressPass {
             kernel,
             support: body.support,
-            lists: &lists.neighbors,
+            lists: lists.pairs.indices(),
             points,
             volume,
             mass,

@@ -194,10 +194,10 @@ fn cloud(
     let Common { kernel, support, spacing, periodic, plane } = common;
     let viscosities = Viscosities::new(&groups, kernel.smoothing_length());
     let spin = viscosities.spin;
-    let blocks = blocks::choose(spacing, !thin.is_empty(), sim)?;
     let skins = Skins::new(support, spacing, &periodic);
     let ends = groups.iter().map(|group| group.cloud.end as u32).collect();
     let total = groups.last().map_or(0, |group| group.cloud.end);
+    let blocks = blocks::choose(total, spacing, !thin.is_empty(), sim)?;
     let gaps = GapPairs::new(sides(&groups, sim));
     let neighborhoods = neighborhoods(&groups, spin, spacing, sim)?;
     Ok(FlowCloud {

@@ -123,7 +123,7 @@ impl Candidates {
         }
         let count = rows.len() as u32;
         let (first, first_ghost) = (rows.start as u32, ghost_rows.start as u32);
-        self.list.renumber(|number| match number.checked_sub(count) {
+        self.list.renumber_from(0, |number| match number.checked_sub(count) {
             None => first + number,
             Some(ghost) => first_ghost + ghost,
         });

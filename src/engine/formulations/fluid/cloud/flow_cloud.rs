@@ -167,7 +167,7 @@ impl FlowCloud {
     /// Number of directed pairs in the lists.
     pub fn pairs(&self) -> usize {
         let FlowPairs { fluid, walls, boundary, .. } = &self.pairs;
-        let of_blocks = self.blocks.as_ref().map_or(0, |blocks| EIGHT * blocks.lists.fluid.count());
+        let of_blocks = self.blocks.as_ref().map_or(0, |blocks| EIGHT * blocks.lists.fluid.pairs());
         of_blocks + fluid.pairs() + walls.pairs() + boundary.pairs()
     }
 

@@ -24,7 +24,7 @@ pub const NEIGHBORS: &str = "fluid_neighbors";
 pub struct Neighbors {
     /// Whether the lists still have to be restored from the checkpoint of the run.
     is_restored: bool,
-    /// Positions that lists are built from, m.
+    /// Positions that the lists have been built from, m.
     built: Vec<DVec3>,
     /// Number of builds since the particles were sorted.
     builds: u64,
@@ -35,7 +35,7 @@ impl FlowCloud {
     /// Builds the lists from these positions, and the memory for the neighbours within the support.
     fn build_lists(&mut self, positions: &[DVec3]) -> Result<(), NeighborError> {
         let Self { pairs, near, near_boundary, fluid, blocks, .. } = self;
-        pairs.build(positions, *fluid, blocks.as_mut().map(|blocks| &mut blocks.lists))?;
+        pairs.build(positions, *fluid, blocks.as_deref_mut())?;
         match blocks {
             Some(blocks) => blocks.allocate(near),
             None => near.allocate(&[&pairs.fluid, &pairs.walls]),
@@ -81,7 +81,6 @@ impl Run for Neighbors {
         cloud.forget_loads();
         cloud.divide_boundaries(step.world);
         let is_known_otherwise = cloud.decide_for_step(step.world)?;
-        let moved = cloud.pack(step.world)?;
         let failed = |error: NeighborError| StepError::System {
             system: NEIGHBORS.to_owned(),
             message: error.to_string(),
@@ -94,8 +93,10 @@ impl Run for Neighbors {
                 cloud.pairs.builds -= 1;
             }
         }
+        // After that, because lists leave the places that they are built from in the packed rows.
+        let moved = cloud.pack(step.world)?;
         let FlowCloud { pairs, records, fluid, .. } = &mut *cloud;
-        if pairs.are_stale(records, *fluid, moved) {
+        if pairs.are_stale(records, *fluid, moved, &self.built) {
             cloud.read_positions(step.world, &mut self.built)?;
             if self.builds >= BUILDS && self.sorter.sort(&cloud, &self.built, step.world) {
                 self.builds = 0;

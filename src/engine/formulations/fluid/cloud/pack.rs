@@ -26,9 +26,6 @@ impl FlowCloud {
     ) -> Result<DisplacementBounds, MissingColumn> {
         let is_local = self.is_local();
         let Self { groups, records, is_still, blocks, .. } = self;
-        if let Some(blocks) = blocks {
-            blocks.packed.resize(records.len(), Packed::default());
-        }
         let mut moved = DisplacementBounds::NONE;
         is_still.clear();
         for group in groups.iter() {

@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use super::displacement_bounds::{BoundsBuilder, DisplacementBounds};
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::neighbors::{Buckets, CellBlock, Periodic, SHIFT, sort_into_cells};
-use crate::parallel::{FourLanes, HotLoop, Lanes4, run_hot, sum_over_blocks};
+use crate::parallel::{FourLanes, HotLoop, Lanes4, run_hot};
 use crate::ranks;
 
 /// Conditions for the validity of lists, m.
@@ -55,6 +55,13 @@ impl Skins {
 /// Displacements in a cell: of fluids, and of boundary particles.
 type Pair = [DisplacementBounds; 2];
 
+/// Where particles are, and where they were when the lists were built, m.
+#[derive(Clone, Copy)]
+pub struct Motion<'a> {
+    pub records: &'a [FlowParticle],
+    pub then: &'a [DVec3],
+}
+
 /// The cells, with the particles that were in each when the lists were built.
 #[derive(Debug, Default)]
 pub struct Drift {
@@ -65,8 +72,6 @@ pub struct Drift {
     length: f64,
     /// The particles of each cell, ascending.
     cells: Buckets,
-    /// Where they were, m, in the order of cells.
-    then: Vec<Lanes4>,
     spreads: Vec<Pair>,
     window: Vec<Pair>,
 }
@@ -80,13 +85,6 @@ impl Drift {
         let sorted = sort_into_cells(&mut self.cells, positions, length, periodic);
         self.grid = CellBlock { counts: sorted.counts, wraps: periodic.axes() };
         self.length = sorted.length;
-        self.then.resize(positions.len(), Lanes4::ZERO);
-        let rows = (&mut self.then[..], &self.cells.rows[..]);
-        sum_over_blocks(rows, &|_, (then, rows): (&mut [Lanes4], &[u32])| {
-            for (then, &row) in then.iter_mut().zip(rows) {
-                *then = Lanes4::new(positions[row as usize], 0.0);
-            }
-        });
     }
 
     /// How much particles near each other can at least still move against each other until a list that was
@@ -94,23 +92,21 @@ impl Drift {
     /// built. The first `fluid` particles are those of the fluid; `own` are the rows that this rank looks at.
     pub fn remaining_skin(
         &mut self,
-        records: &[FlowParticle],
+        motion: Motion<'_>,
         own: &[Range<usize>],
         fluid: usize,
         skins: Skins,
     ) -> f64 {
-        if self.then.len() != records.len() {
+        if motion.then.len() != motion.records.len() {
             return f64::NEG_INFINITY;
         }
-        let Self { cells, then, spreads, periods, .. } = self;
+        let Self { cells, spreads, periods, .. } = self;
         spreads.resize(cells.count(), [DisplacementBounds::NONE; 2]);
         spreads.par_iter_mut().with_min_len(64).enumerate().for_each(|(cell, spread)| {
-            let range = cells.range(cell);
-            let (rows, then) = (&cells.rows[range.clone()], &then[range]);
+            let rows = &cells.rows[cells.range(cell)];
             let before = |row: usize| rows.partition_point(|&other| (other as usize) < row);
             let part = |own: &Range<usize>| {
-                let part = before(own.start)..before(own.end);
-                run_hot(Moved { records, rows: &rows[part.clone()], then: &then[part], periods })
+                run_hot(Moved { motion, rows: &rows[before(own.start)..before(own.end)], periods })
             };
             *spread = [DisplacementBounds::NONE; 2];
             for own in own {
@@ -161,9 +157,8 @@ impl Drift {
 
 /// Displacements of some particles.
 struct Moved<'a> {
-    records: &'a [FlowParticle],
+    motion: Motion<'a>,
     rows: &'a [u32],
-    then: &'a [Lanes4],
     periods: &'a [Lanes4; 2],
 }
 
@@ -172,11 +167,13 @@ impl HotLoop for Moved<'_> {
 
     #[inline(always)]
     fn run<A: FourLanes>(self, a: A) -> DisplacementBounds {
+        let Motion { records, then } = self.motion;
         let [period, inverse] = *self.periods;
         let shift = Lanes4::splat(SHIFT);
         let mut moved = BoundsBuilder::new();
-        for (&row, then) in self.rows.iter().zip(self.then) {
-            let x = a.sub(self.records[row as usize].place, *then);
+        for &row in self.rows {
+            let row = row as usize;
+            let x = a.sub(records[row].place, Lanes4::new(then[row], 0.0));
             // To the nearest periodic image.
             let turns = a.sub(a.mul_add(x, inverse, shift), shift);
             moved.add(a, a.sub(x, a.mul(period, turns)));
@@ -236,8 +233,9 @@ mod tests {
                     .enumerate()
                     .map(|(k, x)| if k < 700 { *x + t * flow(*x) } else { *x })
                     .collect();
+                let motion = Motion { records: &records(&now), then: &then };
                 let is_small =
-                    drift.remaining_skin(&records(&now), std::slice::from_ref(&(0..820)), 700, SKINS) >= 0.0;
+                    drift.remaining_skin(motion, std::slice::from_ref(&(0..820)), 700, SKINS) >= 0.0;
                 let misses = misses(&then, &now, 700, &periodic);
                 assert!(!(is_small && misses), "{n}");
                 small += i32::from(is_small);
@@ -253,17 +251,15 @@ mod tests {
         let mut drift = Drift::default();
         drift.sort(&then, 2.0 * SKINS.support, &Periodic::NONE);
         let moved = |by: DVec3| -> Vec<DVec3> { then.iter().map(|x| *x + by).collect() };
-        let left = drift.remaining_skin(
-            &records(&moved(DVec3::new(70.0, -3.0, 0.1))),
-            std::slice::from_ref(&(0..700)),
-            700,
-            SKINS,
-        );
+        let all = std::slice::from_ref(&(0..700));
+        let now = records(&moved(DVec3::new(70.0, -3.0, 0.1)));
+        let left = drift.remaining_skin(Motion { records: &now, then: &then }, all, 700, SKINS);
         assert!((left - SKINS.fluid).abs() < 1e-12, "{left}");
         for wrong in [f64::NAN, f64::INFINITY] {
             let mut now = moved(DVec3::ZERO);
             now[5].x = wrong;
-            assert!(drift.remaining_skin(&records(&now), std::slice::from_ref(&(0..700)), 700, SKINS) < 0.0);
+            let motion = Motion { records: &records(&now), then: &then };
+            assert!(drift.remaining_skin(motion, all, 700, SKINS) < 0.0);
         }
     }
 }

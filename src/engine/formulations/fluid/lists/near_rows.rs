@@ -56,11 +56,6 @@ impl NearRows {
         &self.lanes[start..start + self.counts[i] as usize]
     }
 
-    /// Number of neighbours in all rows.
-    pub fn count(&self) -> usize {
-        self.counts.iter().map(|&count| count as usize).sum()
-    }
-
     /// Neighbours of row `i` within the support.
     #[inline(always)]
     pub fn row(&self, i: usize) -> &[u32] {

@@ -6,11 +6,11 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::displacement_bounds::DisplacementBounds;
-use super::drift::{Drift, Skins};
+use super::drift::{Drift, Motion, Skins};
 use super::gaps::{GapPairs, GapSearch};
 use super::sides::{Sides, ThinBody};
 use crate::formulations::fluid::lanes::FlowParticle;
-use crate::formulations::fluid::lists::blocks::{BlockLists, ListSources, OtherSources};
+use crate::formulations::fluid::lists::blocks::{BlockLists, Blocks, ListSources, OtherSources};
 use crate::neighbors::{Cloud, FirstOfCloud, NeighborError, NeighborList, NeighborSearch, Periodic};
 use crate::parallel::own_rows;
 use crate::ranks;
@@ -109,14 +109,22 @@ impl FlowPairs {
     }
 
     /// Whether a pair may be missing in the lists, or they never were built; the first `fluid` records are
-    /// those of the fluid. `moved` says how far particles have moved since the question was last asked.
-    pub fn are_stale(&mut self, records: &[FlowParticle], fluid: usize, moved: DisplacementBounds) -> bool {
+    /// those of the fluid. `moved` says how far particles have moved since the question was last asked, `then`
+    /// where they were when the lists were built, m.
+    pub fn are_stale(
+        &mut self,
+        records: &[FlowParticle],
+        fluid: usize,
+        moved: DisplacementBounds,
+        then: &[DVec3],
+    ) -> bool {
         // Looking is needed when the particles may have used up the margin that they had when it was last
         // looked.
         self.remaining_skin -= moved.farthest(moved);
         if self.remaining_skin <= CERTAIN * self.skins.support {
             self.find_own(fluid);
-            self.remaining_skin = self.drift.remaining_skin(records, &self.own, fluid, self.skins);
+            self.remaining_skin =
+                self.drift.remaining_skin(Motion { records, then }, &self.own, fluid, self.skins);
         }
         self.remaining_skin < 0.0
     }
@@ -127,7 +135,7 @@ impl FlowPairs {
         &mut self,
         positions: &[DVec3],
         fluid: usize,
-        blocks: Option<&mut BlockLists>,
+        blocks: Option<&mut Blocks>,
     ) -> Result<(), NeighborError> {
         let Skins { support, fluid: skin, walls: wall_skin, .. } = self.skins;
         let (wet, dry) = (Cloud::uniform(&positions[..fluid], support), &positions[fluid..]);
@@ -152,7 +160,7 @@ impl FlowPairs {
             self.walls.turn(fluid..positions.len(), &mut self.boundary);
             hides = Some((sides, walls));
         }
-        if let Some(lists) = blocks {
+        if let Some(Blocks { lists, packed, units, .. }) = blocks {
             let ends = &self.groups;
             let sources = ListSources {
                 positions,
@@ -167,7 +175,7 @@ impl FlowPairs {
                 sides: hides,
                 all_boundaries: !self.gaps.particles.is_empty(),
             };
-            lists.build(&sources, &mut self.search)?;
+            lists.build(&sources, &mut self.search, packed, units)?;
         }
         // The particles may have moved already: those of an interrupted run have.
         self.remaining_skin = f64::NEG_INFINITY;

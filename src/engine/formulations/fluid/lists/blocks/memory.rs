@@ -17,15 +17,16 @@ pub struct Blocks {
 }
 
 impl Blocks {
-    /// Those of a flow; `hides` says that thin bodies hide near particles from some.
-    pub fn new(units: Units, hides: bool) -> Self {
-        Self { lists: BlockLists::new(units), units, packed: Vec::new(), near: NearRows::default(), hides }
+    /// Those of a flow of that many particles; `hides` says that thin bodies hide near particles from some.
+    pub fn new(particles: usize, units: Units, hides: bool) -> Self {
+        let packed = vec![Packed::default(); particles];
+        Self { lists: BlockLists::default(), units, packed, near: NearRows::default(), hides }
     }
 
     /// Allocates memory for the neighbours within the support: of the blocks, and, if they are wanted, of the
     /// particles.
     pub fn allocate(&mut self, of_particles: &mut NearRows) {
-        let BlockLists { table, fluid, walls, boundary, counts, .. } = &self.lists;
+        let BlockLists { table, fluid, walls, boundary, .. } = &self.lists;
         let most = |block: usize| match block.checked_sub(walls.rows()) {
             Some(block) => boundary.row(block).len(),
             None => fluid.row(block).len() + walls.row(block).len(),
@@ -35,7 +36,8 @@ impl Blocks {
             self.near.keep_lanes();
             let most = |i: usize| {
                 let (block, lane) = table.place(i);
-                counts[block][lane] as usize + walls.row(block).len()
+                let (seen, _) = self.lists.seen(block);
+                seen.iter().filter(|&bits| bits >> lane & 1 == 1).count() + walls.row(block).len()
             };
             of_particles.allocate_rows(table.particles(), most);
         }

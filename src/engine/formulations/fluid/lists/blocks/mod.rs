@@ -4,6 +4,8 @@ mod table;
 
 mod record;
 
+mod sift;
+
 mod seen;
 
 mod lists;

@@ -60,10 +60,9 @@ impl Units {
 type Slices<'a> = (&'a mut [Packed], &'a [FlowParticle]);
 
 /// Packs places alone.
-pub fn pack_places(packed: &mut Vec<Packed>, positions: &[DVec3], units: &Units) {
-    packed.resize(positions.len(), Packed::default());
+pub fn pack_places(packed: &mut [Packed], positions: &[DVec3], units: &Units) {
     type Rows<'a> = (&'a mut [Packed], &'a [DVec3]);
-    for_each_block((&mut packed[..], positions), &mut Vec::new(), &|_, (packed, positions): Rows<'_>| {
+    for_each_block((packed, positions), &mut Vec::new(), &|_, (packed, positions): Rows<'_>| {
         packed.iter_mut().zip(positions).for_each(|(packed, x)| packed.place = units.place(*x));
     });
 }

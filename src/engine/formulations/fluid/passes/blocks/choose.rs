@@ -9,12 +9,17 @@ use crate::scene::{Precision, Problem};
 /// and single precision ends at 1e38.
 const SPACINGS: [f64; 2] = [1e-6, 1e6];
 
-/// The blocks of a flow of that spacing, m, if it has some. `thin` says that the flow does not see across
-/// some bodies.
+/// The blocks of a flow of that many particles and that spacing, m, if it has some. `thin` says that the flow
+/// does not see across some bodies.
 ///
 /// # Errors
 /// Single precision where it cannot be.
-pub fn choose(spacing: f64, thin: bool, sim: &SimBuilder<'_>) -> Result<Option<Box<Blocks>>, SetupError> {
+pub fn choose(
+    particles: usize,
+    spacing: f64,
+    thin: bool,
+    sim: &SimBuilder<'_>,
+) -> Result<Option<Box<Blocks>>, SetupError> {
     let is_asked = match sim.scene().precision {
         Some(Precision::Double) => return Ok(None),
         Some(Precision::Mixed) => true,
@@ -32,5 +37,5 @@ pub fn choose(spacing: f64, thin: bool, sim: &SimBuilder<'_>) -> Result<Option<B
         return Err(SetupError::Problems(vec![problem]));
     }
     let units = Units::new(spacing, &sim.periodic());
-    Ok(Some(Box::new(Blocks::new(units, thin))))
+    Ok(Some(Box::new(Blocks::new(particles, units, thin))))
 }
