@@ -59,8 +59,9 @@ pub struct Measurement {
     pub particle_steps_per_second: f64,
     /// Directed pairs times steps per second.
     pub directed_pairs_per_second: f64,
-    /// Growth of the memory of the program while the simulation was built, per particle, B; none if the
-    /// system does not report it.
+    /// Growth of the resident memory of the program from before the scene was read to the end of the first
+    /// step, per particle, B: the memory of walls counts, their particles do not. None if the system does not
+    /// report it.
     pub bytes_per_particle: Option<f64>,
     /// Exchanges with other ranks in a step.
     pub exchanges_per_step: f64,
