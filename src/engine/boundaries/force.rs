@@ -11,7 +11,8 @@ use crate::scene::{Expression, PerAxis, Select};
 
 /// Loads particles with a force of a given total, in equal shares; with a selection of one particle
 /// (`nearest`) it is a point force. It keeps its direction. On a rigid body it acts at the stated point
-/// itself, or on the `face` or the part of it that is `within`; on other bodies on the particles, half a spacing inside.
+/// itself, or on the `face` or the part of it that is `within`; on other bodies on the particles, half a
+/// spacing inside.
 ///
 /// A smooth start within 10 ms: `Force(on: Select(body: "beam", face: MaxX), value: (0.0,
 /// "-100*smoothstep(t/0.01)"))`.

@@ -20,9 +20,9 @@ use crate::world::DeformationGradient;
 const LABEL: &str = "pressure";
 
 /// Presses on a surface; the force follows it as it turns and stretches. It acts on the surface itself, a
-/// `face` or `surface` of a solid whose shape is known, up to the border of `within`, with the current area and
-/// normal; else on the particles of a face, by f = -p J F^-T N A (Nanson's formula, N and A normal and area in the reference
-/// configuration), in equal shares of the loaded area.
+/// `face` or `surface` of a solid whose shape is known, up to the border of `within`, with the current area
+/// and normal; else on the particles of a face, by f = -p J F^-T N A (Nanson's formula, N and A normal and
+/// area in the reference configuration), in equal shares of the loaded area.
 ///
 /// The bore of a ring: `Pressure(on: Select(body: "ring", surface: Inner), value: 1e6)`.
 ///
