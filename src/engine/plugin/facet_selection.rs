@@ -31,8 +31,8 @@ pub(crate) fn facets_of(
     Ok(chosen)
 }
 
-/// The facets of a body on which a load acts, each with the part that is `within`: a load ends where the scene
-/// says, not at the next facet.
+/// The facets of a body on which a load acts, each with the part that is `within`: a load ends where the
+/// scene says, not at the next facet.
 pub(crate) fn loaded_facets(
     select: &Select,
     id: BodyId,

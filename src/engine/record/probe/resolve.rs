@@ -137,8 +137,8 @@ fn energies(k: usize, on: Option<&Select>, sim: &SimBuilder<'_>) -> Result<Energ
     Ok(EnergyColumns::of_bodies(selection.parts.iter().map(|(id, _)| named(*id)).collect()))
 }
 
-/// Forces on a rigid body act on all of it: those of its particles follow from its acceleration, and their sum
-/// over a part is not what acts there.
+/// Forces on a rigid body act on all of it: those of its particles follow from its acceleration, and their
+/// sum over a part is not what acts there.
 fn refuse_part_of_rigid(k: usize, selection: &Selection, sim: &SimBuilder<'_>) -> Result<(), Vec<Problem>> {
     let is_part = |(id, rows): &&(BodyId, Vec<u32>)| {
         sim.body(*id).kind == BodyKind::Rigid && rows.len() < sim.body(*id).sites.len()
