@@ -89,9 +89,9 @@ struct Gain {
     rate: f64,
 }
 
-/// Share of the heat that goes from particle to particle in a step which the sums of a long run may be off by
-/// rounding.
-const DIGITS: f64 = 1e-12;
+/// Energies below this share of the heat that goes from particle to particle in a step are round-off: a
+/// hundred times what the sums of a long run are off by, as a hundredth of them is worth a warning.
+const DIGITS: f64 = 1e-10;
 
 /// The heat of some particles.
 #[derive(Clone, Copy, Default)]
