@@ -1,10 +1,10 @@
-//! Selections of surfaces: the facets of a skin on which a load acts.
+//! Selections of surfaces: the facets of a body on which a load acts or a probe measures.
 
 use glam::DVec3;
 
 use super::builder::SimBuilder;
 use super::error::SetupError;
-use super::loaded_facet::LoadedFacet;
+use super::facet_part::FacetPart;
 use crate::scene::{Select, SurfacePart};
 use crate::shapes::{Facets, Region, Shape};
 use crate::world::BodyId;
@@ -16,33 +16,18 @@ const EXACT: f64 = 1e-6;
 /// Steps of a ray on its way out of the box around a body.
 const STEPS: usize = 200;
 
-/// The facets of a body that a selection means: those of its `surface`, of its `face`, with their centres
-/// `within`.
-pub(crate) fn facets_of(
+/// The facets of a body that a selection means, those of its `surface` or its `face`, each with the part that
+/// is `within`: a load ends where the scene says, not at the next facet.
+pub(crate) fn facet_parts(
     select: &Select,
     id: BodyId,
     facets: &Facets,
     sim: &SimBuilder<'_>,
-) -> Result<Vec<u32>, SetupError> {
-    let mut chosen = facets_on(select, id, facets, sim)?;
-    if let Some(within) = within(select, sim)? {
-        chosen.retain(|&facet| within.contains(facets.center(facet as usize)));
-    }
-    Ok(chosen)
-}
-
-/// The facets of a body on which a load acts, each with the part that is `within`: a load ends where the
-/// scene says, not at the next facet.
-pub(crate) fn loaded_facets(
-    select: &Select,
-    id: BodyId,
-    facets: &Facets,
-    sim: &SimBuilder<'_>,
-) -> Result<Vec<LoadedFacet>, SetupError> {
+) -> Result<Vec<FacetPart>, SetupError> {
     let chosen = facets_on(select, id, facets, sim)?;
     let within = within(select, sim)?;
-    let loaded = chosen.into_iter().filter_map(|facet| LoadedFacet::new(facet, facets, within.as_deref()));
-    Ok(loaded.collect())
+    let part = |facet| FacetPart::new(facet, facets, within.as_deref());
+    Ok(chosen.into_iter().filter_map(part).collect())
 }
 
 fn within(select: &Select, sim: &SimBuilder<'_>) -> Result<Option<Box<dyn Region>>, SetupError> {

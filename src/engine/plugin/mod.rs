@@ -2,9 +2,9 @@
 
 mod builder;
 mod error;
+mod facet_part;
 mod facet_selection;
 mod handed;
-mod loaded_facet;
 mod offers;
 mod plan;
 mod prescription;
@@ -16,9 +16,9 @@ mod traits;
 
 pub use builder::SimBuilder;
 pub use error::SetupError;
-pub(crate) use facet_selection::{facets_of, loaded_facets};
+pub(crate) use facet_part::FacetPart;
+pub(crate) use facet_selection::facet_parts;
 pub use handed::ForBodies;
-pub(crate) use loaded_facet::LoadedFacet;
 pub use offers::{BodyKind, Offer};
 pub use plan::{BodyPlan, HeldSide};
 pub use prescription::{MotionOfPlace, Prescription};

@@ -11,7 +11,7 @@ use super::stencil::Stencil;
 use super::taken::Extremal;
 use crate::fields::ChosenField;
 use crate::notation;
-use crate::plugin::{BodyKind, BodyPlan, SimBuilder, facets_of};
+use crate::plugin::{BodyKind, BodyPlan, FacetPart, SimBuilder, facet_parts};
 use crate::scene::{self, Line, Problem, Quantity, Reduction, RelativeTo, Select};
 use crate::world::BodySet;
 
@@ -172,7 +172,7 @@ fn points_of_body(
     Ok(Gauge::Measure(Box::new(BodyPoints { body: body.id, field, stencils, made })))
 }
 
-/// The gauge of the surface of one body, at the middles of its facets.
+/// The gauge of the surface of one body, at the middles of its facets or of the selected parts of them.
 fn surface(
     place: &ProbePlace<'_>,
     on: &Select,
@@ -205,11 +205,11 @@ fn surface(
     if place.take != Reduction::Mean {
         check_number(place, &field)?;
     }
-    let chosen = facets_of(on, body.id, &facets, sim).map_err(|error| at_probe(place.k, error))?;
-    let centers: Vec<DVec3> = chosen.iter().map(|&facet| facets.center(facet as usize)).collect();
+    let chosen = facet_parts(on, body.id, &facets, sim).map_err(|error| at_probe(place.k, error))?;
+    let centers: Vec<DVec3> = chosen.iter().map(|part| part.middle(&facets)).collect();
     let found = Stencil::of_points(&centers, body, sim.dimension().count());
-    let area = |facet: &u32| facets.normal_and_measure(*facet as usize).1;
-    let known = found.into_iter().zip(&chosen).filter_map(|(stencil, facet)| Some((stencil?, area(facet))));
+    let area = |part: &FacetPart| part.share * facets.normal_and_measure(part.facet as usize).1;
+    let known = found.into_iter().zip(&chosen).filter_map(|(stencil, part)| Some((stencil?, area(part))));
     let (stencils, areas): (Vec<Stencil>, Vec<f64>) = known.unzip();
     if stencils.is_empty() {
         return Err(place.problem("on", "no part of the surface is selected", extents(&[body])));

@@ -53,6 +53,12 @@ fn surfaces_have_means_and_extremes() {
     let face = r#"on: Select(body: "b", surface: Facing((1, 0)))"#;
     let mean = first(&format!("{face}, quantity: Displacement"));
     near(&mean, &[("x", 0.01 + 0.01 + 0.2 * 0.025), ("y", -0.02 + 0.005 - 0.0025)]);
+    // The part ends within the second facet of 12.5 mm, and includes its border to 1e-9 of its place.
+    let part =
+        r#"on: Select(body: "b", surface: Facing((1, 0)), within: Box(min: (0.05, 0), max: (0.2, 0.02)))"#;
+    let mean = first(&format!("{part}, quantity: Displacement"));
+    let wanted = [0.01 + 0.01 + 0.2 * 0.01, -0.02 + 0.005 - 0.001];
+    assert!(mean.iter().zip(wanted).all(|((_, value), wanted)| (value - wanted).abs() < 1e-9), "{mean:?}");
     // The middles of four facets of 12.5 mm: the highest is at 43.75 mm.
     let y = 0.04375;
     let (ux, uy) = (0.01 + 0.01 + 0.2 * y, -0.02 + 0.005 - 0.1 * y);

@@ -1,4 +1,4 @@
-//! The part of a facet on which a load acts, where the loaded part of a surface ends within the facet.
+//! The part of a facet that is selected, where the selected part of a surface ends within the facet.
 
 use glam::DVec3;
 
@@ -8,20 +8,20 @@ use crate::shapes::{Facets, Region};
 const CELLS: usize = 4;
 /// Bisections of the crossing of a border.
 const BISECTIONS: usize = 40;
-/// Share of a facet below which none of it is loaded.
+/// Share of a facet below which none of it is selected.
 const NOTHING: f64 = 1e-9;
 
 /// A facet, or a part of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct LoadedFacet {
+pub(crate) struct FacetPart {
     pub facet: u32,
-    /// Share of its area that is loaded \[1\].
+    /// Share of its area that is selected \[1\].
     pub share: f64,
-    /// Barycentric coordinates of the middle of the loaded part: the shares of the corners in its load \[1\].
+    /// Barycentric coordinates of the middle of this part: the shares of the corners in a load on it \[1\].
     pub weights: DVec3,
 }
 
-impl LoadedFacet {
+impl FacetPart {
     /// The part of a facet within a region, all of it without one; none if they have nothing in common.
     pub fn new(facet: u32, facets: &Facets, within: Option<&dyn Region>) -> Option<Self> {
         let corners = facets.corners[facet as usize].map(|k| facets.points[k as usize]);
@@ -45,7 +45,7 @@ impl LoadedFacet {
         (share > NOTHING).then(|| Self { facet, share, weights: moment / share })
     }
 
-    /// The middle of the loaded part, m.
+    /// The middle of this part, m.
     pub fn middle(&self, facets: &Facets) -> DVec3 {
         let [a, b, c] = facets.corners[self.facet as usize].map(|k| facets.points[k as usize]);
         self.weights.x * a + self.weights.y * b + self.weights.z * c
