@@ -68,6 +68,8 @@ pub struct Boxes<'a> {
     pub wanted: &'a [Range<usize>],
     /// Ends of the groups of sources that order a row.
     pub groups: &'a [u32],
+    /// Takes sources out of the rows.
+    pub sift: Option<Sift<'a>>,
 }
 
 impl NeighborSearch {
@@ -173,8 +175,8 @@ impl NeighborSearch {
         self.grid_of(sources.first(0), sources, wanted).map(|_| ())
     }
 
-    /// Lists, for each box, the sources of the previous search within the support radius plus the skin that
-    /// `sift` leaves. Otherwise as [`NeighborSearch::of_others`].
+    /// Lists, for each box, the sources of the previous search within the support radius plus the skin.
+    /// Otherwise as [`NeighborSearch::of_others`].
     ///
     /// # Errors
     /// See [`NeighborError`].
@@ -183,16 +185,15 @@ impl NeighborSearch {
         boxes: Boxes<'_>,
         skin: f64,
         periodic: &Periodic,
-        sift: Sift<'_>,
         list: &mut NeighborList,
     ) -> Result<(), NeighborError> {
         let mut buffers = std::mem::take(&mut self.buffers);
-        let done = self.of_boxes_with(&mut buffers, boxes, skin, periodic, Some(sift), list);
+        let done = self.of_boxes_with(&mut buffers, boxes, skin, periodic, list);
         self.buffers = buffers;
         done
     }
 
-    /// All that [`NeighborSearch::of_boxes`] finds, with temporary buffers, which leaves the search unchanged.
+    /// [`NeighborSearch::of_boxes`] with temporary buffers, which leaves the search unchanged.
     ///
     /// # Errors
     /// See [`NeighborError`].
@@ -203,16 +204,15 @@ impl NeighborSearch {
         periodic: &Periodic,
         list: &mut NeighborList,
     ) -> Result<(), NeighborError> {
-        self.of_boxes_with(&mut Buffers::default(), boxes, skin, periodic, None, list)
+        self.of_boxes_with(&mut Buffers::default(), boxes, skin, periodic, list)
     }
 
     fn of_boxes_with(
         &self,
         buffers: &mut Buffers,
-        Boxes { centers, halves, wanted, groups }: Boxes<'_>,
+        Boxes { centers, halves, wanted, groups, sift }: Boxes<'_>,
         skin: f64,
         periodic: &Periodic,
-        sift: Option<Sift<'_>>,
         list: &mut NeighborList,
     ) -> Result<(), NeighborError> {
         let targets = Cloud::uniform(centers, self.sources.largest_support);

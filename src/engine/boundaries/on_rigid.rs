@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::plugin::{BodyKind, BodyPlan, Selection, SetupError, SimBuilder, facet_parts};
+use crate::plugin::{BodyKind, BodyPlan, Selection, SetupError, SimBuilder, selected_facets};
 use crate::rigid::{RigidBodies, Wrench};
 use crate::scene::{Face, Select};
 use crate::schedule::Step;
@@ -43,7 +43,7 @@ pub(super) fn face_part(
         return Ok(None);
     };
     let (mut area, mut moment) = (0.0, DVec3::ZERO);
-    for loaded in facet_parts(select, id, &facets, sim)? {
+    for loaded in selected_facets(select, id, &facets, sim)? {
         let part = loaded.share * facets.normal_and_measure(loaded.facet as usize).1;
         area += part;
         moment += part * loaded.middle(&facets);

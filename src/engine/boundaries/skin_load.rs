@@ -16,7 +16,7 @@ use super::beside_held;
 use super::field::VectorField;
 use super::symmetry::planes_of;
 use crate::notation::{place, quantity};
-use crate::plugin::{BodyPlan, FacetPart, Offer, Selection, SetupError, SimBuilder, facet_parts};
+use crate::plugin::{BodyPlan, Offer, SelectedFacet, Selection, SetupError, SimBuilder, selected_facets};
 use crate::scene::{Expression, Select};
 use crate::schedule::{AccountKind, Mode, Resources, Run, Shared, Stage, Step, StepError, System};
 use crate::shapes::directed_area;
@@ -42,7 +42,7 @@ struct SkinLoad {
     patch: Patch,
     /// The loaded parts of facets, with their middles in the reference configuration, m, and their areas
     /// there, m2; stated areas come in as a factor.
-    facets: Vec<(FacetPart, DVec3, f64)>,
+    facets: Vec<(SelectedFacet, DVec3, f64)>,
     factor: f64,
     /// Forces on the vertices at the end of the last step, N.
     last: Vec<DVec3>,
@@ -100,7 +100,7 @@ pub(super) fn skins_of(
     // A face of a shape without one: the load on particles says what is wrong.
     let has_any = |skins: &Vec<Arc<Skin>>| -> Result<bool, SetupError> {
         for skin in skins {
-            if !facet_parts(select, skin.body, &skin.facets, sim)?.is_empty() {
+            if !selected_facets(select, skin.body, &skin.facets, sim)?.is_empty() {
                 return Ok(true);
             }
         }
@@ -146,11 +146,12 @@ pub(super) fn apply(
     let mut loads = Vec::new();
     let mut total = 0.0;
     for skin in skins {
-        let of = |loaded: FacetPart| {
+        let of = |loaded: SelectedFacet| {
             let area = loaded.share * skin.measure[loaded.facet as usize];
             (loaded, loaded.middle(&skin.facets), area)
         };
-        let facets: Vec<_> = facet_parts(select, skin.body, &skin.facets, sim)?.into_iter().map(of).collect();
+        let facets: Vec<_> =
+            selected_facets(select, skin.body, &skin.facets, sim)?.into_iter().map(of).collect();
         let chosen: Vec<u32> = facets.iter().map(|(loaded, ..)| loaded.facet).collect();
         total += facets.iter().map(|facet| facet.2).sum::<f64>();
         if facets.is_empty() {
@@ -318,7 +319,7 @@ impl SkinLoad {
     fn load(&mut self, step: &Step<'_>) -> Result<(), StepError> {
         let Self { label, kind, patch, facets, factor, .. } = self;
         let (axes, t) = (patch.skin.facets.axes, step.clock.end());
-        for &(FacetPart { facet, share, weights }, middle, area) in &*facets {
+        for &(SelectedFacet { facet, share, weights }, middle, area) in &*facets {
             let corners = patch.corners(facet);
             if !corners.iter().all(|corner| corner.is_there) {
                 continue;

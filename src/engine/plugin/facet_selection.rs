@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::builder::SimBuilder;
 use super::error::SetupError;
-use super::facet_part::FacetPart;
+use super::selected_facet::SelectedFacet;
 use crate::scene::{Select, SurfacePart};
 use crate::shapes::{Facets, Region, Shape};
 use crate::world::BodyId;
@@ -18,15 +18,15 @@ const STEPS: usize = 200;
 
 /// The facets of a body that a selection means, those of its `surface` or its `face`, each with the part that
 /// is `within`: a load ends where the scene says, not at the next facet.
-pub(crate) fn facet_parts(
+pub(crate) fn selected_facets(
     select: &Select,
     id: BodyId,
     facets: &Facets,
     sim: &SimBuilder<'_>,
-) -> Result<Vec<FacetPart>, SetupError> {
+) -> Result<Vec<SelectedFacet>, SetupError> {
     let chosen = facets_on(select, id, facets, sim)?;
     let within = within(select, sim)?;
-    let part = |facet| FacetPart::new(facet, facets, within.as_deref());
+    let part = |facet| SelectedFacet::new(facet, facets, within.as_deref());
     Ok(chosen.into_iter().filter_map(part).collect())
 }
 

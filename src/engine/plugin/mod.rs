@@ -2,7 +2,6 @@
 
 mod builder;
 mod error;
-mod facet_part;
 mod facet_selection;
 mod handed;
 mod offers;
@@ -10,20 +9,21 @@ mod plan;
 mod prescription;
 mod registry;
 mod scope;
+mod selected_facet;
 mod selection;
 mod setup;
 mod traits;
 
 pub use builder::SimBuilder;
 pub use error::SetupError;
-pub(crate) use facet_part::FacetPart;
-pub(crate) use facet_selection::facet_parts;
+pub(crate) use facet_selection::selected_facets;
 pub use handed::ForBodies;
 pub use offers::{BodyKind, Offer};
 pub use plan::{BodyPlan, HeldSide};
 pub use prescription::{MotionOfPlace, Prescription};
 pub(crate) use registry::FormulationEntry;
 pub use registry::{Entry, EntryKind, Registry};
+pub(crate) use selected_facet::SelectedFacet;
 pub use selection::Selection;
 pub use setup::Setup;
 pub use traits::{Formulation, Plugin, Support};

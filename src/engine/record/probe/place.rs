@@ -11,7 +11,7 @@ use super::stencil::Stencil;
 use super::taken::Extremal;
 use crate::fields::ChosenField;
 use crate::notation;
-use crate::plugin::{BodyKind, BodyPlan, FacetPart, SimBuilder, facet_parts};
+use crate::plugin::{BodyKind, BodyPlan, SelectedFacet, SimBuilder, selected_facets};
 use crate::scene::{self, Line, Problem, Quantity, Reduction, RelativeTo, Select};
 use crate::world::BodySet;
 
@@ -205,10 +205,10 @@ fn surface(
     if place.take != Reduction::Mean {
         check_number(place, &field)?;
     }
-    let chosen = facet_parts(on, body.id, &facets, sim).map_err(|error| at_probe(place.k, error))?;
+    let chosen = selected_facets(on, body.id, &facets, sim).map_err(|error| at_probe(place.k, error))?;
     let centers: Vec<DVec3> = chosen.iter().map(|part| part.middle(&facets)).collect();
     let found = Stencil::of_points(&centers, body, sim.dimension().count());
-    let area = |part: &FacetPart| part.share * facets.normal_and_measure(part.facet as usize).1;
+    let area = |part: &SelectedFacet| part.share * facets.normal_and_measure(part.facet as usize).1;
     let known = found.into_iter().zip(&chosen).filter_map(|(stencil, part)| Some((stencil?, area(part))));
     let (stencils, areas): (Vec<Stencil>, Vec<f64>) = known.unzip();
     if stencils.is_empty() {

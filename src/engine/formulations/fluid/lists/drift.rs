@@ -57,7 +57,7 @@ type Pair = [DisplacementBounds; 2];
 
 /// Where particles are, and where they were when the lists were built, m.
 #[derive(Clone, Copy)]
-pub struct Motion<'a> {
+pub struct Places<'a> {
     pub records: &'a [FlowParticle],
     pub then: &'a [DVec3],
 }
@@ -92,12 +92,12 @@ impl Drift {
     /// built. The first `fluid` particles are those of the fluid; `own` are the rows that this rank looks at.
     pub fn remaining_skin(
         &mut self,
-        motion: Motion<'_>,
+        places: Places<'_>,
         own: &[Range<usize>],
         fluid: usize,
         skins: Skins,
     ) -> f64 {
-        if motion.then.len() != motion.records.len() {
+        if places.then.len() != places.records.len() {
             return f64::NEG_INFINITY;
         }
         let Self { cells, spreads, periods, .. } = self;
@@ -106,7 +106,7 @@ impl Drift {
             let rows = &cells.rows[cells.range(cell)];
             let before = |row: usize| rows.partition_point(|&other| (other as usize) < row);
             let part = |own: &Range<usize>| {
-                run_hot(Moved { motion, rows: &rows[before(own.start)..before(own.end)], periods })
+                run_hot(Moved { places, rows: &rows[before(own.start)..before(own.end)], periods })
             };
             *spread = [DisplacementBounds::NONE; 2];
             for own in own {
@@ -157,7 +157,7 @@ impl Drift {
 
 /// Displacements of some particles.
 struct Moved<'a> {
-    motion: Motion<'a>,
+    places: Places<'a>,
     rows: &'a [u32],
     periods: &'a [Lanes4; 2],
 }
@@ -167,7 +167,7 @@ impl HotLoop for Moved<'_> {
 
     #[inline(always)]
     fn run<A: FourLanes>(self, a: A) -> DisplacementBounds {
-        let Motion { records, then } = self.motion;
+        let Places { records, then } = self.places;
         let [period, inverse] = *self.periods;
         let shift = Lanes4::splat(SHIFT);
         let mut moved = BoundsBuilder::new();
@@ -233,9 +233,9 @@ mod tests {
                     .enumerate()
                     .map(|(k, x)| if k < 700 { *x + t * flow(*x) } else { *x })
                     .collect();
-                let motion = Motion { records: &records(&now), then: &then };
+                let places = Places { records: &records(&now), then: &then };
                 let is_small =
-                    drift.remaining_skin(motion, std::slice::from_ref(&(0..820)), 700, SKINS) >= 0.0;
+                    drift.remaining_skin(places, std::slice::from_ref(&(0..820)), 700, SKINS) >= 0.0;
                 let misses = misses(&then, &now, 700, &periodic);
                 assert!(!(is_small && misses), "{n}");
                 small += i32::from(is_small);
@@ -253,13 +253,13 @@ mod tests {
         let moved = |by: DVec3| -> Vec<DVec3> { then.iter().map(|x| *x + by).collect() };
         let all = std::slice::from_ref(&(0..700));
         let now = records(&moved(DVec3::new(70.0, -3.0, 0.1)));
-        let left = drift.remaining_skin(Motion { records: &now, then: &then }, all, 700, SKINS);
+        let left = drift.remaining_skin(Places { records: &now, then: &then }, all, 700, SKINS);
         assert!((left - SKINS.fluid).abs() < 1e-12, "{left}");
         for wrong in [f64::NAN, f64::INFINITY] {
             let mut now = moved(DVec3::ZERO);
             now[5].x = wrong;
-            let motion = Motion { records: &records(&now), then: &then };
-            assert!(drift.remaining_skin(motion, all, 700, SKINS) < 0.0);
+            let places = Places { records: &records(&now), then: &then };
+            assert!(drift.remaining_skin(places, all, 700, SKINS) < 0.0);
         }
     }
 }

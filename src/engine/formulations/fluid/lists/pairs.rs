@@ -6,7 +6,7 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::displacement_bounds::DisplacementBounds;
-use super::drift::{Drift, Motion, Skins};
+use super::drift::{Drift, Places, Skins};
 use super::gaps::{GapPairs, GapSearch};
 use super::sides::{Sides, ThinBody};
 use crate::formulations::fluid::lanes::FlowParticle;
@@ -109,8 +109,8 @@ impl FlowPairs {
     }
 
     /// Whether a pair may be missing in the lists, or they never were built; the first `fluid` records are
-    /// those of the fluid. `moved` says how far particles have moved since the question was last asked, `then`
-    /// where they were when the lists were built, m.
+    /// those of the fluid. `moved` says how far particles have moved since the question was last asked,
+    /// `then` where they were when the lists were built, m.
     pub fn are_stale(
         &mut self,
         records: &[FlowParticle],
@@ -124,7 +124,7 @@ impl FlowPairs {
         if self.remaining_skin <= CERTAIN * self.skins.support {
             self.find_own(fluid);
             self.remaining_skin =
-                self.drift.remaining_skin(Motion { records, then }, &self.own, fluid, self.skins);
+                self.drift.remaining_skin(Places { records, then }, &self.own, fluid, self.skins);
         }
         self.remaining_skin < 0.0
     }

@@ -29,7 +29,8 @@ impl BlockLists {
         let mut near = NeighborList::default();
         if block < fluids {
             let (centers, halves) = (&table.centers[block..=block], &table.halves[block..=block]);
-            let boxes = Boxes { centers, halves, wanted: std::slice::from_ref(&(0..1)), groups };
+            let wanted = std::slice::from_ref(&(0..1));
+            let boxes = Boxes { centers, halves, wanted, groups, sift: None };
             // The same search has succeeded for the blocks of this rank.
             let _ = search.of_more_boxes(boxes, skin, periodic, &mut near);
         }

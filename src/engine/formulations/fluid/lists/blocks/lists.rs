@@ -66,8 +66,8 @@ impl BlockLists {
         (&fluid[self.fluid.range(block)], &walls[self.walls.range(block)])
     }
 
-    /// Builds blocks and lists. The records of blocks `packed` get the places of all fluid particles, in these
-    /// units.
+    /// Builds blocks and lists. The records of blocks `packed` get the places of all fluid particles, in
+    /// these units.
     pub fn build(
         &mut self,
         sources: &ListSources<'_>,
@@ -87,18 +87,19 @@ impl BlockLists {
             if body.end <= particles as usize { sides.is_some() } else { all_boundaries }
         });
         others.begin(own, table.rows.len());
-        let boxes = Boxes {
-            centers: &table.centers[..blocks],
-            halves: &table.halves[..blocks],
-            wanted: others.own(),
-            groups,
-        };
         let packed = &mut packed[..particles as usize];
         pack_places(packed, &positions[..particles as usize], units);
         let limit = ((support + skin) * CERTAIN).powi(2);
         let near = NearTest { table, packed, unit: units.length.to_array(), limit, plane };
         let sift = |first: usize, ends: &mut [usize], found: &mut [u32]| near.sift(first, ends, found);
-        search.of_boxes(boxes, skin, periodic, &sift, fluid)?;
+        let boxes = Boxes {
+            centers: &table.centers[..blocks],
+            halves: &table.halves[..blocks],
+            wanted: others.own(),
+            groups,
+            sift: Some(&sift),
+        };
+        search.of_boxes(boxes, skin, periodic, fluid)?;
         of_blocks.join(of_fluids, |block| others.is_own(block), walls, 0, joined);
         let is_own = |block| others.is_own(blocks + block);
         of_boundaries.join(of_others, is_own, boundary, particles, joined);

@@ -15,7 +15,8 @@
 //!
 //! Rigid and deformable bodies count as walls. A gap beside a rigid one has its pressure normal to the gap
 //! alone: along it, the force on the particles at the edge of the face is the one that is found here from the
-//! other side. Between two bodies that forces move there are no edges: the force would be handed over along another line.
+//! other side. Between two bodies that forces move there are no edges: the force would be handed over along
+//! another line.
 //!
 //! Beside walls without suction the rate of compression keeps v_w. Fluid that goes along a wall is compressed
 //! by the particles of the wall ahead of it and expands by those behind, alike. With v* for the latter, that

@@ -13,7 +13,7 @@ const NOTHING: f64 = 1e-9;
 
 /// A facet, or a part of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct FacetPart {
+pub(crate) struct SelectedFacet {
     pub facet: u32,
     /// Share of its area that is selected \[1\].
     pub share: f64,
@@ -21,7 +21,7 @@ pub(crate) struct FacetPart {
     pub weights: DVec3,
 }
 
-impl FacetPart {
+impl SelectedFacet {
     /// The part of a facet within a region, all of it without one; none if they have nothing in common.
     pub fn new(facet: u32, facets: &Facets, within: Option<&dyn Region>) -> Option<Self> {
         let corners = facets.corners[facet as usize].map(|k| facets.points[k as usize]);
