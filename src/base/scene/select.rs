@@ -14,7 +14,7 @@ pub struct Select {
     /// Those of the body with this name; `"grain*"` stands for all bodies whose names begin with `grain`.
     #[serde(default)]
     pub body: Option<String>,
-    /// Those within this shape; a load on a `face` or `surface` ends at its border.
+    /// Those within this shape; a load or a probe of a `surface`, and a load on a `face`, ends at its border.
     #[serde(default)]
     pub within: Option<Shape>,
     /// The outermost layer of each body on this side.
