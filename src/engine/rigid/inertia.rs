@@ -47,6 +47,9 @@ impl MassProperties {
 /// Distance of the centre of the particles from that of the body, over their radius of gyration, below which
 /// it is round-off.
 const ROUND_OFF: f64 = 1e-9;
+/// Second moment that is added along all axes, over the trace: particles in a plane, as in two dimensions,
+/// have none across it.
+const REGULAR: f64 = 1e-12;
 /// Largest change of the mass of a particle.
 const LARGEST_TILT: f64 = 0.5;
 
@@ -75,8 +78,7 @@ impl Tilt {
         if !is_aside {
             return none;
         }
-        // Particles in a plane, as in two dimensions, have no second moment across it.
-        let regular = second + Sym3::IDENTITY * (ROUND_OFF * second.trace());
+        let regular = second + Sym3::IDENTITY * (REGULAR * second.trace());
         let tilt = Self { middle, slope: regular.inverse() * (total * aside) };
         let is_small = |(_, place): (f64, DVec3)| (tilt.at(place) - 1.0).abs() <= LARGEST_TILT;
         if masses.clone().all(is_small) { tilt } else { none }
