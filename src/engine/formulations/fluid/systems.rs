@@ -221,7 +221,7 @@ fn add_boundaries(sim: &mut SimBuilder<'_>, groups: &[Group], boundaries: Vec<Ph
                 .writes::<Pressure>()
                 .writes::<PreviousVelocity>(),
         );
-        if WallShapes::are_possible(groups, sim) {
+        if WallShapes::are_possible(groups) {
             sim.add_system(
                 System::new(Stage::Boundary, EDGE_FORCES, EdgeForces)
                     .on_phases(boundaries.iter().copied())

@@ -26,6 +26,11 @@ impl Run for EdgeForces {
                 force[0] -= volume * (own + cloud.records[j].pressure()) * part;
                 force[1] -= volume * own * part;
             });
+            // Without suction the fluid is compressed by w itself, so that the work of all of the force on
+            // the motion of the faces relative to w is booked as that of the boundaries.
+            if !cloud.group_of(edge.row).has_suction() {
+                force[1] = force[0];
+            }
             edge.force = force;
         }
         for front in &mut edges.fronts {

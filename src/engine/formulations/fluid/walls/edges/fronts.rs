@@ -7,11 +7,11 @@ use glam::DVec3;
 use crate::formulations::fluid::cloud::{BoundaryEdges, FlowCloud, Front, Group, part};
 use crate::formulations::fluid::lists::SideMotion;
 use crate::formulations::fluid::walls::surface_distance::{BoundaryShape, BoundaryView, FaceBefore};
-use crate::plugin::{BodyKind, SimBuilder};
+use crate::plugin::SimBuilder;
 use crate::scene::{Probe, Quantity};
 use crate::schedule::{Step, StepError};
 
-/// The shapes of the walls and rigid bodies of a flow.
+/// The shapes of the walls and bodies of a flow.
 pub struct WallShapes {
     shapes: Vec<BoundaryShape>,
     /// Their rows.
@@ -23,25 +23,27 @@ pub struct WallShapes {
 }
 
 impl WallShapes {
-    /// Those of a flow with at least two.
+    /// Those of a flow with at least two known shapes.
     pub fn new(groups: &[Group], sim: &SimBuilder<'_>) -> Option<Self> {
         // Nothing is repelled here.
         let shape = |group| BoundaryShape::of(group, Vec::new(), 2.0 * sim.body(group.body).spacing, sim);
-        let shapes: Vec<BoundaryShape> = Self::candidates(groups, sim).filter_map(shape).collect();
+        let shapes: Vec<BoundaryShape> = Self::candidates(groups).filter_map(shape).collect();
         let rows = shapes.iter().map(|shape| shape.group.cloud.clone()).collect();
         let beside = vec![Vec::new(); shapes.len()];
         let are_asked = Self::are_asked_for(groups, sim);
-        (shapes.len() > 1).then_some(Self { shapes, rows, beside, are_asked })
+        (Self::are_possible(groups) && shapes.len() > 1).then_some(Self { shapes, rows, beside, are_asked })
     }
 
-    /// Whether there may be edges.
-    pub fn are_possible(groups: &[Group], sim: &SimBuilder<'_>) -> bool {
-        Self::candidates(groups, sim).count() > 1
+    /// Whether there may be edges: where there are several walls or bodies.
+    pub fn are_possible(groups: &[Group]) -> bool {
+        let mut bodies = Self::candidates(groups).map(|group| group.body);
+        let first = bodies.next();
+        bodies.any(|body| Some(body) != first)
     }
 
-    /// The walls and the rigid bodies.
-    fn candidates<'a>(groups: &'a [Group], sim: &'a SimBuilder<'_>) -> impl Iterator<Item = &'a Group> {
-        groups.iter().filter(|group| group.is_wall() || sim.body(group.body).kind == BodyKind::Rigid)
+    /// All but the fluids.
+    fn candidates(groups: &[Group]) -> impl Iterator<Item = &Group> {
+        groups.iter().filter(|group| group.fluid().is_none())
     }
 
     /// Whether there are several walls, and a probe asks for forces on any.

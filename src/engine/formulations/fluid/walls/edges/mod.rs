@@ -13,9 +13,10 @@
 //! the adjoint: from the force f_w of pressure on w, face k takes `c_k n_k (n_k.q_w)` with q_w = (...)^-1
 //! f_w, and c_w q_w stays. Their sum is f_w, and the power of all is that of f_w with v*_w.
 //!
-//! Rigid bodies count as walls. A gap beside such a body has its pressure normal to the gap alone: along it,
-//! the force on the particles at the edge of the face is the one that is found here from the other side.
-//! Between two bodies that forces move there are no edges: the force would be handed over along another line.
+//! Rigid and deformable bodies count as walls. A gap beside a rigid one has its pressure normal to the gap
+//! alone: along it, the force on the particles at the edge of the face is the one that is found here from the
+//! other side. Between two bodies that forces move there are no edges: the force would be handed over along
+//! another line.
 //!
 //! Beside walls without suction the rate of compression keeps v_w. Fluid that goes along a wall is compressed
 //! by the particles of the wall ahead of it and expands by those behind, alike. With v* for the latter, that
