@@ -47,13 +47,10 @@ impl Shape {
             Self::Scale { shape, by, about } => {
                 let (by, about) = check.scale(*by, *about)?;
                 let region = shape.region(dimension, folder, &check.field("shape"))?;
-                match shape.as_ref() {
-                    // The distance from an ellipsoid is exact, that of another stretched shape a lower bound.
-                    Self::Sphere { center, radius } if is_stretched(by, axes) => {
-                        let center = about + by * (center.0 - about);
-                        Box::new(StretchedSphere::new(center, by * *radius, axes))
-                    }
-                    _ => Box::new(Scaled { region, by, about, axes }),
+                // The distance from an ellipsoid is exact, that of another stretched shape a lower bound.
+                match shape.stretched_sphere(by, about, axes) {
+                    Some(ellipsoid) => Box::new(ellipsoid),
+                    None => Box::new(Scaled { region, by, about, axes }),
                 }
             }
             single => check.single(single)?,
@@ -61,8 +58,9 @@ impl Shape {
     }
 
     /// The surface of this shape, for tools. It exists for all single shapes, for translated, rotated and
-    /// uniformly scaled ones, and for combinations of parts whose surfaces are disjoint. Files are looked for
-    /// in `folder`; `path` is the field that holds the shape, for error messages.
+    /// uniformly scaled ones, for stretched spheres, and for combinations of parts whose surfaces are
+    /// disjoint. Files are looked for in `folder`; `path` is the field that holds the shape, for error
+    /// messages.
     ///
     /// # Errors
     /// Those of [`region`](Self::region), and a combination or stretched shape whose nearest points have no
@@ -101,13 +99,25 @@ impl Shape {
             Self::Scale { shape, by, about } => {
                 let (by, about) = check.scale(*by, *about)?;
                 let region = shape.surface(dimension, folder, &check.field("shape"))?;
-                if is_stretched(by, axes) {
-                    return none("the factors of the scaling are not equal");
+                match shape.stretched_sphere(by, about, axes) {
+                    Some(ellipsoid) => Box::new(ellipsoid),
+                    None if is_stretched(by, axes) => {
+                        return none("the factors of the scaling are not equal, and it scales no sphere");
+                    }
+                    None => Box::new(Scaled { region, by, about, axes }),
                 }
-                Box::new(Scaled { region, by, about, axes })
             }
             single => check.single(single)?,
         })
+    }
+}
+
+impl Shape {
+    /// This sphere stretched along the axes; none for another shape or equal factors.
+    fn stretched_sphere(&self, by: DVec3, about: DVec3, axes: usize) -> Option<StretchedSphere> {
+        let Self::Sphere { center, radius } = self else { return None };
+        let center = about + by * (center.0 - about);
+        is_stretched(by, axes).then(|| StretchedSphere::new(center, by * *radius, axes))
     }
 }
 

@@ -121,7 +121,8 @@ pub enum Shape {
         #[serde(default)]
         about: Vec3,
     },
-    /// The shape stretched along the axes. The spacing stays as it is.
+    /// The shape stretched along the axes. The spacing stays as it is. A rigid body or tool may be a sphere
+    /// with unequal factors, an ellipsoid; other shapes need equal ones there.
     Scale {
         /// The shape to stretch.
         shape: Box<Shape>,

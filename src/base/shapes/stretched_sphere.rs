@@ -4,7 +4,10 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
+use super::moments::Moments;
 use super::region::{Aabb, Region};
+use super::surface::{Surface, SurfacePoint};
+use crate::linalg::Sym3;
 
 /// Maximum number of steps of Newton's method, which needs less than ten except close to a centre of
 /// curvature.
@@ -83,8 +86,37 @@ impl Region for StretchedSphere {
     }
 }
 
+impl Surface for StretchedSphere {
+    fn closest(&self, point: DVec3) -> SurfacePoint {
+        let arm = point - self.center;
+        let (mut beside, mut slope) = (arm.abs(), DVec3::ZERO);
+        (self.axes..3).for_each(|k| beside[k] = 0.0);
+        let mut foot = self.foot(beside);
+        for k in 0..self.axes {
+            foot[k] = foot[k].copysign(arm[k]);
+            slope[k] = foot[k] / (self.semi_axes[k] * self.semi_axes[k]);
+        }
+        SurfacePoint {
+            point: self.center + foot,
+            normal: slope.normalize(),
+            signed_distance: self.distance(point),
+        }
+    }
+
+    fn moments(&self) -> Option<Moments> {
+        let volume = self.volume()?;
+        // Of a homogeneous ball and of a disc, per volume and square of the radius.
+        let share = if self.axes == 3 { 0.2 } else { 0.25 };
+        let second = share * volume * self.semi_axes * self.semi_axes;
+        Some(Moments { volume, center: self.center, second: Sym3::from_diagonal(second) })
+    }
+}
+
 #[cfg(test)]
 mod tests {
+    use glam::DMat3;
+
+    use super::super::sphere::BallRegion;
     use super::*;
 
     /// The distance from points of the surface of an ellipse, found by search.
@@ -128,5 +160,33 @@ mod tests {
             let found = ellipse.distance(DVec3::new(point.0, point.1, 0.0));
             assert!((found - distance).abs() < 1e-12, "{point:?}: {found}");
         }
+    }
+
+    #[test]
+    fn nearest_points_are_on_the_ellipsoid_and_along_its_normal() {
+        let a = DVec3::new(1.0, 0.6, 0.4);
+        let ellipsoid = StretchedSphere::new(DVec3::new(0.1, 0.2, -0.3), a, 3);
+        for n in 0..343 {
+            let arm = 0.43 * (DVec3::new(f64::from(n % 7), f64::from(n / 7 % 7), f64::from(n / 49)) - 3.0);
+            let found = ellipsoid.closest(ellipsoid.center + arm);
+            let on = found.point - ellipsoid.center;
+            assert!(((on / a).length_squared() - 1.0).abs() < 1e-12, "{arm}: {on}");
+            let outward = (on / (a * a)).normalize();
+            assert!((found.normal - outward).length() < 1e-12, "{arm}");
+            let back = on + found.signed_distance * outward;
+            assert!((back - arm).length() < 1e-9, "{arm}: {back}");
+        }
+    }
+
+    #[test]
+    fn moments_are_those_of_the_ball_stretched() {
+        let ball = BallRegion { center: DVec3::ZERO, radius: 2.0, axes: 3 };
+        let by = DVec3::new(0.5, 1.5, 3.0);
+        let found = StretchedSphere::new(DVec3::ZERO, 2.0 * by, 3).moments().expect("a closed form");
+        let ball = ball.moments().expect("a closed form");
+        let Sym3 { xx, yy, zz, .. } = ball.second;
+        let expected = Sym3::from_diagonal(DVec3::new(xx, yy, zz) * by * by * by.element_product());
+        assert!((found.second - expected).to_matrix().abs_diff_eq(DMat3::ZERO, 1e-12 * expected.zz));
+        assert!((found.volume / (ball.volume * by.element_product()) - 1.0).abs() < 1e-14);
     }
 }

@@ -22,7 +22,8 @@
 //! by the particles of the wall ahead of it and expands by those behind, alike. With v* for the latter, that
 //! in the corner ahead of a piston would be compressed as the piston goes on, by more the smaller the spacing
 //! (1.5 and 3.3 times the pressure ahead of one that pushes a bore, 8 and 16 deep). Beside walls with suction
-//! the adjoint of the force on those ahead (`wall_compression`) restores the balance.
+//! the adjoint of the force on those ahead (`wall_compression`) restores the balance. Without suction, the
+//! work of f_w on v*_w - v_w is not that of a compressed fluid: all of it is booked as that of boundaries.
 //!
 //! This holds for particles that are behind the face of another wall, with a weight of one half where such a
 //! face ends in the middle of a particle's spacing. If the fluid ends at a right angle, the particles behind
