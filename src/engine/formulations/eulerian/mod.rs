@@ -25,6 +25,7 @@ mod control_rows;
 mod dilatation;
 mod divergence;
 mod elsewhere;
+mod few_neighbors;
 mod force;
 mod lists;
 mod near;
