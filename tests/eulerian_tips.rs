@@ -63,8 +63,11 @@ fn the_force_of_a_tip_is_the_adjoint_of_its_share_of_the_strain_rate() {
     let partial = fits.iter().filter(|(_, share)| *share > 0.0 && *share < 0.5).count();
     assert!(partial > 0, "no particle has a share");
     let kirchhoff = |p: &Particle| p.stress * p.deformation.transpose();
-    let a: Vec<DMat3> =
-        all.iter().zip(&fits).map(|(p, (inverse, share))| strained(kirchhoff(p), *share) * *inverse).collect();
+    let a: Vec<DMat3> = all
+        .iter()
+        .zip(&fits)
+        .map(|(p, (inverse, share))| strained(kirchhoff(p), *share) * *inverse)
+        .collect();
     let mut stress_power = 0.0;
     for (i, p) in all.iter().enumerate() {
         let force: DVec3 = pairs(&all, i).map(|(j, w, x)| p.volume * ((a[i] + a[j]) * x) * w).sum();

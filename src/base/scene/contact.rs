@@ -11,7 +11,8 @@ use super::{BodyDescription, Item};
 pub struct Contact {
     /// The names of the two bodies; the same name twice is contact of a body with itself. `"grain*"` stands
     /// for all bodies whose names begin with `grain`: `("grain*", "floor")` is each of them with the floor,
-    /// `("grain*", "grain*")` each with each other.
+    /// `("grain*", "grain*")` each with each other. `("*", "*")` is each solid, rigid body and wall with each
+    /// other, without fluids, on which bodies act by the flow, and without walls among themselves.
     pub between: (String, String),
     /// The contact law, force against overlap of the surfaces: `Penalty`, `Hertz`.
     #[serde(default = "penalty")]
@@ -52,6 +53,11 @@ fn penalty() -> Item {
 }
 
 impl Contact {
+    /// Whether `between` names this body itself, and not by the beginning of its name.
+    pub fn states(&self, body: &str) -> bool {
+        self.between.0 == body || self.between.1 == body
+    }
+
     /// The pairs of names that `between` stands for, each once.
     pub(super) fn pairs<'s>(&self, bodies: &'s [BodyDescription]) -> Vec<(&'s str, &'s str)> {
         let named = |name: &str| {

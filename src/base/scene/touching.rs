@@ -1,12 +1,15 @@
 //! The pairs of bodies of a scene that have a contact.
 
-use super::Scene;
-
 /// The pairs of bodies that have a contact, by their names.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TouchingPairs(Vec<(String, String)>);
 
 impl TouchingPairs {
+    /// These pairs.
+    pub const fn new(pairs: Vec<(String, String)>) -> Self {
+        Self(pairs)
+    }
+
     /// Whether there is a contact between two bodies, or of one with itself.
     pub fn has(&self, a: &str, b: &str) -> bool {
         self.partners(a).any(|partner| partner == b)
@@ -24,13 +27,6 @@ impl TouchingPairs {
             () if other == body => Some(one.as_str()),
             () => None,
         })
-    }
-}
-
-impl Scene {
-    /// The pairs of bodies that have a contact.
-    pub fn touching_pairs(&self) -> TouchingPairs {
-        TouchingPairs(self.contact_pairs().map(|(_, contact)| contact.between).collect())
     }
 }
 

@@ -181,7 +181,7 @@ fn falling(sim: &SimBuilder<'_>, driven: &BTreeMap<BodyId, [Option<MotionOfPlace
         return BodySet::default();
     }
     let mut touching: BTreeMap<String, usize> = BTreeMap::new();
-    for (_, contact) in sim.scene().contact_pairs() {
+    for (_, contact) in sim.contact_pairs() {
         *touching.entry(contact.between.0).or_default() += 1;
         *touching.entry(contact.between.1).or_default() += 1;
     }

@@ -26,10 +26,9 @@ const MIN_COMMON: f64 = 4.0;
 
 /// Warns of every pair of bodies that have a contact and will meet face to face.
 pub(super) fn warn(sim: &mut SimBuilder<'_>) {
-    let scene = sim.scene();
     let motions = Motions::of(sim);
     let body = |name: &str| sim.bodies().iter().find(|body| body.name == name);
-    let pairs = scene.contact_pairs().filter_map(|(_, contact)| {
+    let pairs = sim.contact_pairs().filter_map(|(_, contact)| {
         let (a, b) = &contact.between;
         Some([body(a)?, body(b)?])
     });

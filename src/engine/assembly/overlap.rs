@@ -10,13 +10,13 @@ use glam::DVec3;
 
 use crate::neighbors::{Cloud, NeighborList, Periodic, SupportRadii};
 use crate::notation::place;
-use crate::plugin::{BodyKind, BodyPlan};
+use crate::plugin::{BodyKind, BodyPlan, contact_pairs};
 use crate::scene::{Contact, ContactSurface, Problem, Scene};
 use crate::shapes::Region;
 
 /// One problem for every pair of bodies that overlap. Files of shapes are looked for in `folder`.
 pub(super) fn problems(bodies: &[BodyPlan], scene: &Scene, folder: &Path) -> Vec<Problem> {
-    let contacts: Vec<Contact> = scene.contact_pairs().map(|(_, contact)| contact).collect();
+    let contacts: Vec<Contact> = contact_pairs(scene, bodies).map(|(_, contact)| contact).collect();
     let owners: Vec<usize> = bodies.iter().flat_map(|body| vec![body.id.0; body.sites.len()]).collect();
     if bodies.len() < 2 {
         return Vec::new();

@@ -1,6 +1,7 @@
 //! Extension of the engine: the registry that resolves names of scenes, and the builder that plugins use.
 
 mod builder;
+mod contact_pairs;
 mod error;
 mod facet_selection;
 mod handed;
@@ -15,6 +16,7 @@ mod setup;
 mod traits;
 
 pub use builder::SimBuilder;
+pub(crate) use contact_pairs::contact_pairs;
 pub use error::SetupError;
 pub(crate) use facet_selection::selected_facets;
 pub use handed::ForBodies;

@@ -93,7 +93,7 @@ fn warn_of_held_rotation(id: BodyId, constraint: &Constraint, sim: &mut SimBuild
         let (one, other) = &contact.between;
         contact.friction > 0.0 && [one, other].contains(&&name)
     };
-    if constraint.is_held_from_turning() && moves && sim.scene().contact_pairs().any(rubs) {
+    if constraint.is_held_from_turning() && moves && sim.contact_pairs().any(rubs) {
         sim.warn(format!(
             "rigid body `{name}` does not turn, so that friction cannot make it roll: a condition holds or drives it along some axes; \
              `formulation: Rigid(rotation: Free)` lets it turn, `Rigid(rotation: Held)` says that it shall not"
@@ -198,7 +198,7 @@ impl Rigid {
 /// The surface of a body. Where no contact names it, any shape will do.
 fn surface(plan: &BodyPlan, shape: &Shape, sim: &SimBuilder<'_>) -> Result<Box<dyn Surface>, SetupError> {
     let exact = sim.surface(shape, &format!("bodies[{}].shape", plan.id.0));
-    if exact.is_ok() || sim.scene().touching_pairs().names(&plan.name) {
+    if exact.is_ok() || sim.touching_pairs().names(&plan.name) {
         return exact;
     }
     match shape.region(sim.dimension(), sim.folder(), "shape") {

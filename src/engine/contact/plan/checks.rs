@@ -1,7 +1,7 @@
 //! Invalid contacts of a scene.
 
 use super::body::{find, is_rigid};
-use crate::plugin::{BodyPlan, Offer, SimBuilder};
+use crate::plugin::{BodyKind, BodyPlan, Offer, SimBuilder};
 use crate::scene::{Contact, Problem};
 
 /// A pair of bodies of a scene, and the number of the contact that names it.
@@ -18,7 +18,8 @@ impl NamedPair<'_> {
 
     /// Why there cannot be such a contact after `others`.
     pub fn refused(&self, others: &[(usize, Contact)], sim: &SimBuilder<'_>) -> Option<Problem> {
-        self.named_before(others)
+        self.with_a_fluid(sim)
+            .or_else(|| self.named_before(others))
             .or_else(|| self.rigid_with_itself(sim))
             .or_else(|| self.heat_without_temperature(sim))
             .or_else(|| self.own_contact_not_offered(sim))
@@ -33,6 +34,13 @@ impl NamedPair<'_> {
             let message = format!("the contact between `{a}` and `{b}` is given twice");
             self.problem(message, "give each pair of bodies once")
         })
+    }
+
+    fn with_a_fluid(&self, sim: &SimBuilder<'_>) -> Option<Problem> {
+        let (a, b) = &self.contact.between;
+        let fluid = [a, b].into_iter().find(|name| find(sim, name).kind == BodyKind::Fluid)?;
+        let message = format!("`{fluid}` is a fluid, which has no contacts");
+        Some(self.problem(message, "leave this contact out: the flow acts on the bodies in it without one"))
     }
 
     fn rigid_with_itself(&self, sim: &SimBuilder<'_>) -> Option<Problem> {

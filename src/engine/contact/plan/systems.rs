@@ -17,7 +17,7 @@ use crate::world::BodySet;
 /// Two contacts of one pair, a law whose parameters are wrong, bodies that cannot touch.
 pub fn add_systems(sim: &mut SimBuilder<'_>, make: MakeLaw<'_>) -> Result<(), Vec<Problem>> {
     let planes: Vec<MirrorPlane> = sim.take_extensions();
-    let contacts: Vec<(usize, Contact)> = sim.scene().contact_pairs().collect();
+    let contacts: Vec<(usize, Contact)> = sim.contact_pairs().collect();
     let mut planner = Planner {
         sim,
         make,

@@ -113,7 +113,7 @@ impl Formulation for Eulerian {
             }
             kernels.push(EulerianKernel { kernel, divergence: parameters.divergence, control: None });
             let name = &sim.body(*id).name;
-            let touches_itself = sim.scene().touching_pairs().has(name, name);
+            let touches_itself = sim.touching_pairs().has(name, name);
             let rows = sim.body(*id).rows.clone();
             listed.push(EulerianBody { id: *id, rows, support, repeats, touches_itself });
         }

@@ -49,7 +49,7 @@ fn boundaries(groups: &[Group]) -> Vec<PhaseId> {
 /// The phases that take sub-steps: those of bodies which the fluid moves, and that of walls if any of these
 /// may touch one.
 pub fn short_phases(groups: &[Group], sim: &SimBuilder<'_>) -> Vec<PhaseId> {
-    let touching = sim.scene().touching_pairs();
+    let touching = sim.touching_pairs();
     let touched = |group: &Group| touching.names(&sim.body(group.body).name);
     let moved = |group: &Group| matches!(&group.role, Role::Boundary(surface) if surface.moved);
     if !groups.iter().any(moved) {

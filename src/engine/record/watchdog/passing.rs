@@ -24,7 +24,7 @@ pub(super) struct PassingBodies {
 impl PassingBodies {
     /// All pairs of solids and rigid bodies that have no contact.
     pub fn new(sim: &SimBuilder<'_>) -> Self {
-        let touching = sim.scene().touching_pairs();
+        let touching = sim.touching_pairs();
         let solid = |body: &&BodyPlan| matches!(body.kind, BodyKind::Solid | BodyKind::Rigid);
         let bodies = || sim.bodies().iter().filter(solid);
         let all = bodies().flat_map(|a| bodies().filter(|b| a.id.0 < b.id.0).map(move |b| (a, b)));

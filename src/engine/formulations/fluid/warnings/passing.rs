@@ -28,7 +28,7 @@ struct BodyAndWall {
 impl PassingWalls {
     /// All pairs of a scene that have no contact.
     pub fn new(sim: &SimBuilder<'_>) -> Self {
-        let touching = sim.scene().touching_pairs();
+        let touching = sim.touching_pairs();
         let of = |kind: BodyKind| sim.bodies().iter().filter(move |body| body.kind == kind);
         let mut pairs = Vec::new();
         for wall in of(BodyKind::Boundary) {
