@@ -242,3 +242,22 @@ fn half_a_plate_carries_half_the_water() {
     // The last half support of the half plate lacks water to press on it.
     assert!(whole < -1e-2 && (half / whole - 1.0).abs() < 0.05, "{half} {whole}");
 }
+
+#[test]
+fn patterns_of_contacts_leave_out_fluids_and_pairs_of_walls() {
+    let mut sim = simulation(
+        r#"(dimension: Two, gravity: (0.0, -9.81),
+            materials: {"water": Fluid(density: 1000.0, viscosity: 5.0), "steel": Steel, "rubber": NeoHookean(density: 1100, young: 1e6, poisson: 0.3)},
+            bodies: [
+                (name: "water", material: "water", shape: Box(min: (0, 0), max: (0.6, 0.1)), spacing: 0.025, formulation: Fluid),
+                (name: "floor", material: "wall", shape: Box(min: (-0.1, -0.1), max: (0.7, 0)), spacing: 0.025, formulation: Wall()),
+                (name: "left", material: "wall", shape: Box(min: (-0.1, 0), max: (0, 0.4)), spacing: 0.025, formulation: Wall()),
+                (name: "right", material: "wall", shape: Box(min: (0.6, 0), max: (0.7, 0.4)), spacing: 0.025, formulation: Wall()),
+                (name: "block", material: "steel", shape: Box(min: (0.1, 0.2), max: (0.2, 0.3)), spacing: 0.025, formulation: Rigid()),
+                (name: "sheet", material: "rubber", shape: Box(min: (0.3, 0.2), max: (0.4, 0.3)), spacing: 0.025, formulation: TotalLagrangian),
+            ],
+            contacts: [Contact(between: ("*", "*"), law: Penalty(stiffness: 1e6))],
+            time: (end: 0.01))"#,
+    );
+    sim.run(|_| true).expect("a run");
+}
