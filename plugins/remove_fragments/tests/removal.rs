@@ -88,17 +88,18 @@ fn small_pieces_are_taken_out_and_large_ones_are_not() {
     }
 }
 
-/// A piece of one column of three beside a symmetry plane is one of six in the whole problem, and one of a
-/// single particle in the corner of two planes one of four; one of three elsewhere stays one of three.
+/// A piece of four particles beside a symmetry plane is one of eight in the whole problem, and in the corner of
+/// two planes one of sixteen; elsewhere it stays one of four.
 #[test]
 fn a_piece_is_one_with_its_mirror_image() {
-    let shape = "Union([Box(min: (0, 1), max: (0.1, 1.3)), Box(min: (2, 1), max: (2.1, 1.3)), Box(min: (0, 0), max: (0.1, 0.1))])";
+    let shape = "Union([Box(min: (0, 1), max: (0.2, 1.2)), Box(min: (2, 1), max: (2.2, 1.2)), Box(min: (0, 0), max: (0.2, 0.2))])";
     let planes = "Symmetry(plane: X, at: 0), Symmetry(plane: Y, at: 0)";
     for formulation in FORMULATIONS {
         for (plugin, out) in [
+            ("remove_fragments(particles: 4)", 0),
             ("remove_fragments()", 4),
-            ("remove_fragments(particles: 4)", 3),
-            ("remove_fragments(particles: 7)", 7),
+            ("remove_fragments(particles: 9)", 8),
+            ("remove_fragments(particles: 17)", 12),
         ] {
             let sim = flight_beside(formulation, shape, plugin, r#""0", "0""#, 0.1, planes).expect("a run");
             assert_eq!(removed(&sim), out, "{formulation}, {plugin}");
