@@ -6,13 +6,13 @@ use crate::plugin::{BodyKind, SimBuilder};
 use crate::solids::DampedSubSteps;
 use crate::world::BodySet;
 
-/// Share of the damping. A strip of rubber, four particles of the water beside it thick, rings with 0.02 and is
-/// quiet with 0.05.
+/// Share of the damping. A strip of rubber, four particles of the water beside it thick, rings with 0.02 and
+/// is quiet with 0.05.
 const SHARE: f64 = 0.1;
-/// The same where bodies have suction. Their rate of compression counts both the particles of the body and the
-/// adjoint of its pressure, which doubles the stiffness of the fluid beside it: modes that swing to and fro in
-/// two steps of the fluid, such as the breathing of a sheet between two layers of water, grow with 0.1 for some
-/// moduli. With 0.2 none grew, at 2.2 to 40 MPa in steps of 4.5 %.
+/// The same where bodies have suction. Their rate of compression counts both the particles of the body and
+/// the adjoint of its pressure, which doubles the stiffness of the fluid beside it: modes that swing to and
+/// fro in two steps of the fluid, such as the breathing of a sheet between two layers of water, grow with 0.1
+/// for some moduli. With 0.2 none grew, at 2.2 to 40 MPa in steps of 4.5 %.
 const SHARE_WITH_SUCTION: f64 = 0.2;
 
 /// Asks for the damping of all deformable bodies of a scene with fluids, if they may take sub-steps.
