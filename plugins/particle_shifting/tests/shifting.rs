@@ -58,8 +58,8 @@ fn vortices_leave_the_particles_even() {
     assert!(with > 0.65 && with > without + 0.05, "{with} {without}");
 }
 
-/// In a box that is periodic along both axes nothing acts from outside. From an irregular start the shift owes
-/// energy, which friction pays back.
+/// In a box that is periodic along both axes nothing acts from outside. From an irregular start the shift
+/// owes energy, which friction pays back.
 #[test]
 fn momentum_stays() {
     for lattice in ["Square", "Relaxed(seed: 1)"] {

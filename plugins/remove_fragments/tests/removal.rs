@@ -88,8 +88,8 @@ fn small_pieces_are_taken_out_and_large_ones_are_not() {
     }
 }
 
-/// A piece of four particles beside a symmetry plane is one of eight in the whole problem, and in the corner of
-/// two planes one of sixteen; elsewhere it stays one of four.
+/// A piece of four particles beside a symmetry plane is one of eight in the whole problem, and in the corner
+/// of two planes one of sixteen; elsewhere it stays one of four.
 #[test]
 fn a_piece_is_one_with_its_mirror_image() {
     let shape = "Union([Box(min: (0, 1), max: (0.2, 1.2)), Box(min: (2, 1), max: (2.2, 1.2)), Box(min: (0, 0), max: (0.2, 0.2))])";

@@ -3,9 +3,9 @@
 //!
 //! For p_i < 0 away from a free surface `p_i + p_j` of the pressure force becomes `p_j - p_i`: the force is
 //! reduced by `-2 p_i V_i sum_j V_j w_ij x_ij`, which is zero for evenly spread particles. This term has no
-//! energy and no opposite force. Each particle gives up a part of the sum of all these forces in proportion to
-//! the size of its own, so that they add up to zero, and the whole term is scaled down where it would supply
-//! more energy than it has dissipated.
+//! energy and no opposite force. Each particle gives up a part of the sum of all these forces in proportion
+//! to the size of its own, so that they add up to zero, and the whole term is scaled down where it would
+//! supply more energy than it has dissipated.
 
 use meshless_engine::correction::MomentMatrix;
 use meshless_engine::formulations::fluid::{

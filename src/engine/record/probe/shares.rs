@@ -11,7 +11,8 @@ use glam::DVec3;
 use crate::correction::MomentMatrix;
 
 /// Largest sum of the sizes of what the slope adds to the shares. At a corner of a block in space it is 3.4;
-/// particles that nearly lie on a line, and a point beside it, have any: their slope is not that of the field.
+/// particles that nearly lie on a line, and a point beside it, have any: their slope is not that of the
+/// field.
 const LARGEST: f64 = 6.0;
 
 /// Shares of particles with these weights and offsets from the point, m.

@@ -13,10 +13,10 @@ use crate::world::{BodyId, Mass, Removed, Velocity};
 /// Largest share of their relative velocities that neighbours lose in a step.
 const MAX_LOSS: f64 = 0.05;
 
-/// Pays back what an account of dissipation has given to a body, where it is below zero: `dv_i = s rho_0/rho_i
-/// sum_j V_j W_ij (v_ij . x_ij) x_ij / r_ij^2` over the body, with s such that the energy is paid, at most 0.05
-/// in a step. Forces of pairs are opposite: momentum and angular momentum stay, and rigid rotation has no such friction. The account is that of
-/// the stabilizer, so that it is no source of energy.
+/// Pays back what an account of dissipation has given to a body, where it is below zero: `dv_i = s
+/// rho_0/rho_i sum_j V_j W_ij (v_ij . x_ij) x_ij / r_ij^2` over the body, with s such that the energy is
+/// paid, at most 0.05 in a step. Forces of pairs are opposite: momentum and angular momentum stay, and rigid
+/// rotation has no such friction. The account is that of the stabilizer, so that it is no source of energy.
 #[derive(Debug, Default)]
 pub struct Repayment {
     rubs: Vec<UnitFriction>,
