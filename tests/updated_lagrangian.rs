@@ -9,7 +9,7 @@ use meshless::glam::DVec3;
 use meshless::scene::Source;
 use meshless::simulation::{Checkpoint, Simulation};
 use meshless::world::{
-    BodyId, DeformationGradient, Mass, Position, ReferencePosition, SupportRadius, Velocity,
+    BodyId, DeformationGradient, Mass, Position, ReferencePosition, Removed, SupportRadius, Velocity,
 };
 
 /// Updates often, so that short runs have many of them.
@@ -113,6 +113,33 @@ fn a_body_that_loses_particles_updates_no_other_one() {
     };
     assert!(moved(0), "particles of `a` have left");
     assert!(!moved(1), "`b` has lost nothing");
+}
+
+/// A particle that has been removed stays where it was; what is left of its body may move on at any speed.
+#[test]
+fn a_body_that_leaves_removed_particles_behind_is_updated_as_one_at_rest() {
+    let flown = |speed: f64| {
+        let text = format!(
+            r#"(dimension: Two, materials: {{"brittle": NeoHookean(density: 1, young: 1, poisson: 0.3)}},
+                bodies: [(name: "strip", material: "brittle", shape: Box(min: (0, 0), max: (1.0, 0.4)), spacing: 0.04,
+                          formulation: UpdatedLagrangian,
+                          plugins: [hourglass_control(),
+                                    failure(criterion: MaximumPrincipalStrain(limit: 0.05), then: Removed)])],
+                conditions: [InitialVelocity(on: Select(), value: ("0.3*(x - 0.5)*(1 + x)", "{speed:?}"))],
+                time: (end: 10.0, step: Fixed(0.005)))"#
+        );
+        let sim = after(&Source::new("flown.ron", text), 120);
+        let place = DVec3::Y * (speed * sim.clock().time);
+        let (view, rows) = sim.world().body_view(BodyId(0));
+        let removed = view.read::<Removed>().expect("removed particles");
+        let own = positions(&sim, 0).into_iter().zip(&removed[rows]);
+        own.map(|(x, removed)| (x - place, *removed != Removed::NO)).collect::<Vec<_>>()
+    };
+    let (rest, flight) = (flown(0.0), flown(5.0));
+    assert!(rest.iter().any(|(_, removed)| *removed), "some have failed");
+    for (a, b) in rest.iter().zip(&flight) {
+        assert!(a.1 == b.1 && (a.1 || (a.0 - b.0).length() < 1e-9), "{a:?} {b:?}");
+    }
 }
 
 /// A beam that is thrown, spins and swings: 24 x 6 particles of rubber, irregular.

@@ -21,6 +21,7 @@ const SPACING: f64 = 0.05;
 const H: f64 = 0.075;
 const SOUND_SPEED: f64 = 20.0;
 const STRENGTHS: [f64; 2] = [5.0, 2.0];
+const REST_DENSITIES: [f64; 2] = [1000.0, 800.0];
 
 /// A tank with two fluids of different strengths, a free surface and walls, far from order.
 const SCENE: &str = r#"(dimension: Two, gravity: (0, -9.81),
@@ -194,8 +195,10 @@ impl Pairs<'_> {
                 let along = self.between(i, j).normalize().extend(0.0);
                 let parting = (state.middle[j] - state.middle[i]).dot(along);
                 let share = state.volume[j] * self.value(self.between(i, j)) * parting;
-                change[i] += share * along;
-                taken += 0.5 * state.mass[i] * share * parting;
+                // Where densities differ, the masses of two particles with the same volumes do too.
+                let lightness = REST_DENSITIES[body] * state.volume[i] / state.mass[i];
+                change[i] += lightness * share * along;
+                taken += 0.5 * REST_DENSITIES[body] * state.volume[i] * share * parting;
             }
         }
         change.iter().map(|change| (owed / taken).min(0.05) * change).collect()

@@ -1,5 +1,6 @@
 //! Which particles are debris.
 
+use meshless_engine::glam::DVec3;
 use meshless_engine::plugin::SimBuilder;
 use meshless_engine::removal::RemovalRule;
 use meshless_engine::schedule::{Access, Mode, Run, Stage, Step, StepError, System};
@@ -67,22 +68,30 @@ struct Fragments {
 
 impl Fragments {
     /// Whether a particle belongs to a piece of fewer particles. A particle with so many neighbours that it
-    /// cannot ends the search at once, so that an intact body costs one pass over its rows.
+    /// cannot ends the search at once, so that an intact body costs one pass over its rows. A piece that is
+    /// connected to its mirror image behind a symmetry plane is one with it.
     fn is_small(&mut self, solid: &dyn SolidPhase, row: usize) -> bool {
         let Self { particles, found } = self;
         found.clear();
         found.push(row);
-        let mut next = 0;
-        while next < found.len() && found.len() < *particles {
+        let (mut next, mut mirrored) = (0, DVec3::ONE);
+        let count = |found: &[usize], mirrored: DVec3| {
+            found.len()
+                * mirrored.to_array().iter().map(|&sign| if sign < 0.0 { 2 } else { 1 }).product::<usize>()
+        };
+        while next < found.len() && count(found, mirrored) < *particles {
             solid.neighbors(found[next], &mut |j, _| {
                 let source = solid.ghosts().source(j);
+                if let Some(signs) = solid.ghosts().mirror(j) {
+                    mirrored = mirrored.min(signs);
+                }
                 if found.len() < *particles && !found.contains(&source) {
                     found.push(source);
                 }
             });
             next += 1;
         }
-        found.len() < *particles
+        count(found, mirrored) < *particles
     }
 }
 

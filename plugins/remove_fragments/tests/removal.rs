@@ -11,10 +11,22 @@ const FORMULATIONS: [&str; 4] =
 
 /// A body without stiffness to speak of that moves with the velocity `u`, until `end`.
 fn flight(formulation: &str, shape: &str, plugin: &str, u: &str, end: f64) -> Result<Simulation, String> {
+    flight_beside(formulation, shape, plugin, u, end, "")
+}
+
+/// The same with further conditions.
+fn flight_beside(
+    formulation: &str,
+    shape: &str,
+    plugin: &str,
+    u: &str,
+    end: f64,
+    conditions: &str,
+) -> Result<Simulation, String> {
     let text = format!(
         r#"(dimension: Two, materials: {{"dust": NeoHookean(density: 1, young: 1e-9, poisson: 0)}},
             bodies: [(name: "dust", material: "dust", shape: {shape}, spacing: 0.1, formulation: {formulation}, plugins: [{plugin}])],
-            conditions: [InitialVelocity(on: Select(), value: ({u}))],
+            conditions: [InitialVelocity(on: Select(), value: ({u})), {conditions}],
             time: (end: {end:?}, step: Fixed(0.01)))"#
     );
     let (scene, source) = parse(Source::new("dust.ron", text)).map_err(|error| error.to_string())?;
@@ -72,6 +84,25 @@ fn small_pieces_are_taken_out_and_large_ones_are_not() {
             assert!(out == 0 || rows.clone().all(|row| first(row) <= (gone[row] == Removed::YES)));
             let momentum: f64 = rows.map(|row| m[row].0 * v[row].0.x).sum();
             assert!((momentum - 0.01 * (26 - out) as f64).abs() < 1e-9, "{formulation}: {momentum}");
+        }
+    }
+}
+
+/// A piece of four particles beside a symmetry plane is one of eight in the whole problem, and in the corner
+/// of two planes one of sixteen; elsewhere it stays one of four.
+#[test]
+fn a_piece_is_one_with_its_mirror_image() {
+    let shape = "Union([Box(min: (0, 1), max: (0.2, 1.2)), Box(min: (2, 1), max: (2.2, 1.2)), Box(min: (0, 0), max: (0.2, 0.2))])";
+    let planes = "Symmetry(plane: X, at: 0), Symmetry(plane: Y, at: 0)";
+    for formulation in FORMULATIONS {
+        for (plugin, out) in [
+            ("remove_fragments(particles: 4)", 0),
+            ("remove_fragments()", 4),
+            ("remove_fragments(particles: 9)", 8),
+            ("remove_fragments(particles: 17)", 12),
+        ] {
+            let sim = flight_beside(formulation, shape, plugin, r#""0", "0""#, 0.1, planes).expect("a run");
+            assert_eq!(removed(&sim), out, "{formulation}, {plugin}");
         }
     }
 }

@@ -3,8 +3,9 @@
 //!
 //! For p_i < 0 away from a free surface `p_i + p_j` of the pressure force becomes `p_j - p_i`: the force is
 //! reduced by `-2 p_i V_i sum_j V_j w_ij x_ij`, which is zero for evenly spread particles. This term has no
-//! energy and no opposite force: momentum is conserved only as far as particles are evenly spread, and the
-//! whole term is scaled down where it would supply more energy than it has dissipated.
+//! energy and no opposite force. Each particle gives up a part of the sum of all these forces in proportion
+//! to the size of its own, so that they add up to zero, and the whole term is scaled down where it would
+//! supply more energy than it has dissipated.
 
 use meshless_engine::correction::MomentMatrix;
 use meshless_engine::formulations::fluid::{
@@ -107,6 +108,7 @@ impl TensileForce {
             let tension = if self.interior.has(i) { pressure[i].0.min(0.0) } else { 0.0 };
             self.arrangements[i].first_moment * (2.0 * tension * cloud.volume(i))
         }));
+        balance(&mut self.changes);
         let both = (&velocity[rows.clone()], &self.changes[..]);
         let given = step.clock.dt
             * sum_over_blocks(both, &|_, (velocity, changes): (&[Velocity], &[DVec3])| {
@@ -118,6 +120,16 @@ impl TensileForce {
         }
         step.ledger.add(account, id, -share * given);
         Ok(())
+    }
+}
+
+/// Makes the sum of some forces zero, N: they conserve momentum, and their power is the same in every frame.
+fn balance(forces: &mut [DVec3]) {
+    let (sum, sizes): (DVec3, f64) = sum_over_blocks(&forces[..], &|_, forces: &[DVec3]| {
+        forces.iter().fold((DVec3::ZERO, 0.0), |(sum, sizes), f| (sum + *f, sizes + f.length()))
+    });
+    if sizes > 0.0 {
+        forces.iter_mut().for_each(|force| *force -= sum * (force.length() / sizes));
     }
 }
 

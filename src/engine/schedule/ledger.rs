@@ -160,6 +160,11 @@ impl Ledger {
         self.resolution = self.resolution.max(energy);
     }
 
+    /// Energies below this are round-off, J.
+    pub fn resolution(&self) -> f64 {
+        self.resolution
+    }
+
     /// The largest energy that any account has held, J.
     pub fn largest(&self) -> f64 {
         self.largest

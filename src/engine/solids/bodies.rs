@@ -39,8 +39,8 @@ pub struct SolidBody {
     pub hessian: Option<HessianDifference>,
     /// Its control along pairs.
     pub control: Option<PairControl>,
-    /// Whether its sub-steps are damped.
-    damped: bool,
+    /// Share of the damping of its sub-steps, if they are damped.
+    damping: Option<f64>,
     /// Factor of the stable step by the stretches of the body.
     stretch_factor: f64,
 }
@@ -125,13 +125,14 @@ impl SolidBodies {
             sim.add_column_to::<DampedStrain>(bodies);
             sim.add_column_to::<DampingStress>(bodies);
         });
-        let is_damped = |id| damped.iter().any(|damped| damped.bodies.contains(id));
+        let damping =
+            |id| damped.iter().find(|damped| damped.bodies.contains(id)).map(|damped| damped.value.share);
         let body = |&id: &BodyId| {
             let own = control.iter().filter(|own| own.bodies.contains(id)).map(|own| *own.value);
             let sum =
                 |a: PairControl, b: PairControl| PairControl { xi: a.xi + b.xi, across: a.across + b.across };
             let control = own.reduce(sum);
-            let body = SolidBody::new(id, sim, &terms, &hessian, is_damped(id));
+            let body = SolidBody::new(id, sim, &terms, &hessian, damping(id));
             body.map(|body| SolidBody { control, ..body }).map_err(|error| error.of_formulation(id))
         };
         let bodies = ids.iter().map(body).collect::<Result<Vec<_>, _>>()?;
@@ -247,13 +248,14 @@ impl SolidBodies {
         }
         let SolidPart { dt, is_short, refits } = part;
         let terms = &terms[..body.terms.len()];
-        let constitutive = Constitutive { law: &*body.law, terms, refits, dt, is_short };
+        let damping = body.damping.filter(|_| is_short).unwrap_or(0.0);
+        let constitutive = Constitutive { law: &*body.law, terms, refits, dt, damping };
         let (mut own, first_row) = (Some(own), rows.start);
         let is_divided = columns.is_divided;
         let mut of_state = |bytes: [&mut [u8]; MAX_STATE]| {
             let Some(own) = own.take() else { return };
             let (_, state) = StateRows::new(&body.state, bytes).split(rows.start);
-            let written = columns.rows(&rows, state.split(rows.len()).0, body.damped);
+            let written = columns.rows(&rows, state.split(rows.len()).0, body.damping.is_some());
             let all = (written, own);
             let body = |first, (rows, own): (SolidRows<'_>, O)| {
                 SolidBlock::with(first_row + first, |scratch| block(&constitutive, rows, own, scratch))
@@ -386,7 +388,7 @@ impl SolidBody {
         sim: &SimBuilder<'_>,
         all: &[ForBodies<FoldedTermOfBodies>],
         hessian: &[ForBodies<HessianDifference>],
-        damped: bool,
+        damping: Option<f64>,
     ) -> Result<Self, SetupError> {
         let body = sim.body(id);
         let terms: Vec<usize> = (0..all.len()).filter(|&k| all[k].bodies.contains(id)).collect();
@@ -424,7 +426,7 @@ impl SolidBody {
                 format!("the material of body `{}` has more than {MAX_STATE} state columns", body.name);
             SetupError::parameter("", message, "this is a fault of the material, not of the scene")
         })?;
-        Ok(Self { id, law, state, estimate, terms, hessian, control: None, damped, stretch_factor: 1.0 })
+        Ok(Self { id, law, state, estimate, terms, hessian, control: None, damping, stretch_factor: 1.0 })
     }
 
     /// Whether it has folded terms.
@@ -445,7 +447,7 @@ impl SolidBody {
     fn book(&self, sum: &SolidSum, terms: &[Arc<FoldedTermOfBodies>], ledger: &mut Ledger) {
         let strain = ledger.account("strain", AccountKind::Stored);
         ledger.set(strain, self.id, sum.strain);
-        if self.damped {
+        if self.damping.is_some() {
             let damping = ledger.account(damping::ACCOUNT, AccountKind::Dissipated);
             ledger.add(damping, self.id, sum.damped);
         }

@@ -258,8 +258,8 @@ pub struct Constitutive<'a> {
     pub(super) refits: Option<&'a Refits>,
     /// Length of the step, s; zero before the first.
     pub dt: f64,
-    /// Whether the step is a part of a long one.
-    pub(super) is_short: bool,
+    /// Share of the damping of sub-steps; zero where the step is none.
+    pub(super) damping: f64,
 }
 
 impl Constitutive<'_> {
@@ -314,7 +314,7 @@ impl Constitutive<'_> {
             let damping = Damping {
                 elastic: self.law.elastic(),
                 dt: self.dt,
-                is_short: self.is_short,
+                share: self.damping,
                 deformation: rows.deformation,
                 gradient: &block.gradient[..n],
                 modulus: &block.modulus[..n],

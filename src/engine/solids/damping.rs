@@ -19,9 +19,6 @@ use crate::linalg::Sym3;
 use crate::materials::ElasticConstants;
 use crate::parallel::split_by_rows;
 
-/// c. A strip of rubber, four particles of the water beside it thick, rings with 0.02 and is quiet with 0.05.
-const SHARE: f64 = 0.1;
-
 crate::column! {
     /// Green-Lagrange strain at the end of the last sub-step.
     pub struct DampedStrain(crate::linalg::Sym3) = "damped_strain", "E_n", "1";
@@ -35,7 +32,10 @@ crate::column! {
 pub(super) const ACCOUNT: &str = "coupling_damping";
 
 /// Handed to solids whose sub-steps are damped, by what sub-cycles them.
-pub(crate) struct DampedSubSteps;
+pub(crate) struct DampedSubSteps {
+    /// c.
+    pub share: f64,
+}
 
 /// The columns of a body, empty where it is not damped.
 #[derive(Default)]
@@ -52,8 +52,8 @@ pub(super) struct Damping<'a> {
     /// Length of the step, s; zero before the first and where bonds are cut: the strain is then measured
     /// anew.
     pub dt: f64,
-    /// Whether the step is a part of a long one.
-    pub is_short: bool,
+    /// c; zero where the step is not a part of a long one.
+    pub share: f64,
     pub deformation: &'a [DMat3],
     /// H = F - I.
     pub gradient: &'a [DMat3],
@@ -67,14 +67,13 @@ impl Damping<'_> {
     /// the two kicks, J.
     pub fn add(&self, rows: DampingRows<'_>, stress: &mut [DMat3]) -> f64 {
         let ElasticConstants { lambda, shear, young, .. } = *self.elastic;
-        let share = if self.is_short { SHARE } else { 0.0 };
         let mut work = 0.0;
         for (k, (before, damping)) in rows.strain.iter_mut().zip(rows.stress).enumerate() {
             let h = self.gradient[k];
             let strain = Sym3::symmetric_part(h) + Sym3::gram(h) * 0.5;
             if self.dt > 0.0 {
                 let change = strain - *before;
-                let stiffness = share * self.modulus[k] / young;
+                let stiffness = self.share * self.modulus[k] / young;
                 let now = Sym3::IDENTITY * (stiffness * lambda * change.trace())
                     + change * (2.0 * stiffness * shear);
                 work += 0.5 * self.volume[k] * (*damping + now).double_dot(&change);
@@ -92,9 +91,10 @@ mod tests {
     use super::*;
 
     const DT: f64 = 1e-6;
+    const SHARE: f64 = 0.1;
 
     /// The stress that is added at F = I + H, and the work, after a step from the strain of `before`.
-    fn added(before: DMat3, h: DMat3, is_short: bool) -> (DMat3, f64) {
+    fn added(before: DMat3, h: DMat3, share: f64) -> (DMat3, f64) {
         let elastic = ElasticConstants::from_young_poisson(1e6, 0.3);
         let (mut strain, mut damping, mut stress) = ([Sym3::ZERO], [Sym3::ZERO], [DMat3::ZERO]);
         let mut work = 0.0;
@@ -103,7 +103,7 @@ mod tests {
             let block = Damping {
                 elastic: &elastic,
                 dt,
-                is_short,
+                share,
                 deformation: &[DMat3::IDENTITY + h],
                 gradient: &[h],
                 modulus: &[1e6],
@@ -120,13 +120,13 @@ mod tests {
         let stretch = DMat3::from_diagonal(glam::DVec3::new(0.1, -0.05, 0.02));
         let turn = DMat3::from_rotation_z(0.3);
         let turned = turn * (DMat3::IDENTITY + stretch) - DMat3::IDENTITY;
-        let (stress, work) = added(stretch, turned, true);
+        let (stress, work) = added(stretch, turned, SHARE);
         assert!(stress.to_cols_array().iter().all(|p| p.abs() < 1e-9) && work.abs() < 1e-12, "{stress}");
         let h = DMat3::from_diagonal(glam::DVec3::new(1e-6, 0.0, 0.0));
-        let (stress, work) = added(DMat3::ZERO, h, true);
+        let (stress, work) = added(DMat3::ZERO, h, SHARE);
         let modulus = ElasticConstants::from_young_poisson(1e6, 0.3).longitudinal_modulus();
         assert!((stress.x_axis.x / (SHARE * modulus * 1e-6) - 1.0).abs() < 1e-5, "{stress}");
         assert!((work / (SHARE * modulus * 1e-12) - 1.0).abs() < 1e-5, "{work}");
-        assert_eq!(added(DMat3::ZERO, h, false), (DMat3::ZERO, 0.0), "one step for all is not damped");
+        assert_eq!(added(DMat3::ZERO, h, 0.0), (DMat3::ZERO, 0.0), "one step for all is not damped");
     }
 }

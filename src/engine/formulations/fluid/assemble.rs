@@ -16,7 +16,7 @@ use crate::formulations::fluid::lists::{
 };
 use crate::formulations::fluid::passes::blocks;
 use crate::formulations::fluid::setup::{advice, checks, rest, start};
-use crate::formulations::fluid::walls::{Repulsion, Slip, WallBody, WallShapes};
+use crate::formulations::fluid::walls::{Repulsion, Slip, WallBody, WallShapes, has_suction};
 use crate::neighbors::Periodic;
 use crate::parallel::Lanes4;
 use crate::plugin::{BodyKind, BodyPlan, SetupError, SimBuilder};
@@ -67,7 +67,7 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     let pressures = rest::pressures(given.collect(), common.support, sim)?;
     bodies.fluid = bodies.groups.iter().map(|group| group.rows.len()).sum();
     bodies.add_walls(&walls, sim);
-    bodies.add_moved(&moved, is_confined(&walls, sim), &common, sim)?;
+    bodies.add_moved(&moved, has_suction(sim), &common, sim)?;
     let short = systems::short_phases(&bodies.groups, sim);
     bodies.groups.iter_mut().for_each(|group| group.short = short.contains(&group.phase));
     sim.sub_cycle(short);
@@ -260,13 +260,6 @@ fn neighborhoods(
     bodies.dedup();
     let of = |id: BodyId| Neighborhood::new(sim.body(id), spacing, &sim.periodic());
     bodies.into_iter().map(|id| of(id).map_err(|error| SetupError::internal(&error))).collect()
-}
-
-/// Whether the flow has no free surface, so that bodies in it may have suction: where walls do, or where the
-/// domain has no end.
-fn is_confined(walls: &[WallBody], sim: &SimBuilder<'_>) -> bool {
-    let endless = sim.periodic().axes().iter().take(sim.dimension().count()).all(|&repeats| repeats);
-    endless || walls.iter().any(|wall| wall.parameters.suction)
 }
 
 /// The bodies that a fluid moves, those of a phase together: solids, then rigid bodies.

@@ -173,7 +173,8 @@ impl HotLoop for LargestDistance<'_> {
     }
 }
 
-/// Whether a pair has changed its length by more than `most` since the last update, m.
+/// Whether a pair has changed its length by more than `most` since the last update, m. What has been removed
+/// stays where it was, whatever the body does, and has no pairs.
 fn has_changed(rows: Range<usize>, packed: &UpdatedRows, most: f64) -> bool {
     let UpdatedRows { sites, bonds, ghosts, .. } = packed;
     let ellipsoids = Ellipsoids(&packed.ellipsoids);
@@ -183,9 +184,11 @@ fn has_changed(rows: Range<usize>, packed: &UpdatedRows, most: f64) -> bool {
         packed.ellipsoids[rows.clone()].iter().map(Ellipsoid::axis_bound).fold(f64::INFINITY, f64::min);
     let least = (most * shortest).powi(2);
     let largest: Maximum = sum_over_blocks(&sites[rows], &|first, own: &[PackedParticle]| {
-        let changes = own.iter().enumerate().flat_map(|(k, site)| {
+        let present = own.iter().enumerate().filter(|(_, site)| site.is_present());
+        let changes = present.flat_map(|(k, site)| {
             let i = first_row + first + k;
-            bonds.row(i).filter_map(move |(j, _)| {
+            let others = bonds.row(i).filter(|&(j, _)| sites[j].is_present());
+            others.filter_map(move |(j, _)| {
                 let change = sites[j].displacement.xyz() - site.displacement.xyz();
                 if change.length_squared() < least {
                     return None;

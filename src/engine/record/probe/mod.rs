@@ -13,6 +13,7 @@ mod planar;
 mod point;
 mod relative;
 mod resolve;
+mod shares;
 mod stencil;
 mod taken;
 #[cfg(test)]

@@ -1,15 +1,10 @@
 //! A field at a point: an average over the particles nearby, corrected so that a linear field comes out
 //! exactly.
-//!
-//! With weights w_k and distances d_k from the point, the value is that of the weighted least-squares plane
-//! at the point, `f = mean(f) - g . mean(d)` with the slope `g = C^-1 cov(d, f)` (moving least squares of
-//! first order, Lancaster & Salkauskas, Math. Comp. 37 (1981) 141). Where the particles do not span the
-//! space, it is the plain weighted mean (Shepard).
 
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::correction::MomentMatrix;
+use super::shares::shares;
 use crate::fields::ChosenField;
 use crate::materials::Law;
 use crate::neighbors::Periodic;
@@ -42,19 +37,12 @@ impl PointGauge {
     /// The field at the point, one number for each component; NaN where no particle is near.
     pub(super) fn read(&self, world: &World, resources: &Resources) -> Result<Vec<f64>, MissingColumn> {
         let near = self.near(world, resources)?;
-        let total: f64 = near.iter().map(|p| p.weight).sum();
-        let mean_offset = near.iter().map(|p| p.weight * p.offset).sum::<DVec3>() / total;
-        let mut moment = MomentMatrix::new(world.dimension().count());
-        near.iter().for_each(|p| moment.add(p.weight, p.offset - mean_offset));
-        let inverse = moment.inverse();
-        let component = |c: usize| {
-            let mean = near.iter().map(|p| p.weight * p.values[c]).sum::<f64>() / total;
-            let slope = inverse.map_or(DVec3::ZERO, |inverse| {
-                let centred = |p: &NearPoint| p.weight * (p.values[c] - mean) * (p.offset - mean_offset);
-                inverse * near.iter().map(centred).sum::<DVec3>()
-            });
-            mean - slope.dot(mean_offset)
-        };
+        if near.is_empty() {
+            return Ok(vec![f64::NAN; self.field.width()]);
+        }
+        let places: Vec<(f64, DVec3)> = near.iter().map(|p| (p.weight, p.offset)).collect();
+        let shares = shares(&places, world.dimension().count());
+        let component = |c: usize| near.iter().zip(&shares).map(|(p, share)| share * p.values[c]).sum();
         Ok((0..self.field.width()).map(component).collect())
     }
 

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::correction::MomentMatrix;
+use super::shares::shares;
 use crate::neighbors::{Cloud, NeighborList, NeighborSearch, Periodic};
 use crate::plugin::BodyPlan;
 
@@ -72,18 +72,10 @@ impl Stencil {
         (particles().min().unwrap_or(0), particles().max().unwrap_or(0))
     }
 
-    /// The shares of the particles in the value at the point, by which linear functions are exact: those of
-    /// the weighted least-squares plane. Particles that are not `there` have none.
+    /// The [shares] of the particles in the value at the point. Particles that are not `there` have none.
     pub fn shares(&self, axes: usize, there: impl Fn(u32) -> bool) -> Vec<(u32, f64)> {
         let near: Vec<&StencilParticle> = self.0.iter().filter(|near| there(near.particle)).collect();
-        let total: f64 = near.iter().map(|near| near.weight).sum();
-        let middle = near.iter().map(|near| near.weight * near.offset).sum::<DVec3>() / total;
-        let mut moment = MomentMatrix::new(axes);
-        near.iter().for_each(|near| moment.add(near.weight, near.offset - middle));
-        let slope = moment.inverse().map_or(DVec3::ZERO, |inverse| inverse * middle);
-        let share = |near: &&StencilParticle| {
-            (near.particle, near.weight * (1.0 / total - slope.dot(near.offset - middle)))
-        };
-        near.iter().map(share).collect()
+        let places: Vec<(f64, DVec3)> = near.iter().map(|near| (near.weight, near.offset)).collect();
+        near.iter().map(|near| near.particle).zip(shares(&places, axes)).collect()
     }
 }

@@ -28,11 +28,13 @@ pub(super) struct EnergyGrowth {
 }
 
 impl EnergyGrowth {
-    /// Checks a step; stored energy below `resolution`, J, is round-off.
+    /// Checks a step; stored energy below `resolution`, J, or below what the ledger calls round-off, is
+    /// none.
     pub fn look(&mut self, step: &Step<'_>, resolution: f64, remedies: &Remedies) -> Result<(), StepError> {
         let (ledger, clock) = (&*step.ledger, step.clock);
         let stored = ledger.stored();
         self.available = self.available.max(ledger.stored_at_start() + ledger.supplied());
+        let resolution = resolution.max(ledger.resolution());
         let sound = self.available <= 0.0 || stored <= (FACTOR * self.available).max(resolution);
         self.beyond = if sound { 0 } else { self.beyond + 1 };
         if self.beyond < PATIENCE {

@@ -13,10 +13,10 @@ use crate::world::{BodyId, Mass, Removed, Velocity};
 /// Largest share of their relative velocities that neighbours lose in a step.
 const MAX_LOSS: f64 = 0.05;
 
-/// Pays back what an account of dissipation has given to a body, where it is below zero: `dv_i = s sum_j V_j
-/// W_ij (v_ij . x_ij) x_ij / r_ij^2` over the body, with s such that the energy is paid, at most 0.05 in a
-/// step. Momentum and angular momentum stay, and rigid rotation has no such friction. The account is that of
-/// the stabilizer, so that it is no source of energy.
+/// Pays back what an account of dissipation has given to a body, where it is below zero: `dv_i = s
+/// rho_0/rho_i sum_j V_j W_ij (v_ij . x_ij) x_ij / r_ij^2` over the body, with s such that the energy is
+/// paid, at most 0.05 in a step. Forces of pairs are opposite: momentum and angular momentum stay, and rigid
+/// rotation has no such friction. The account is that of the stabilizer, so that it is no source of energy.
 #[derive(Debug, Default)]
 pub struct Repayment {
     rubs: Vec<UnitFriction>,
@@ -26,9 +26,9 @@ pub struct Repayment {
 /// Friction of strength one.
 #[derive(Clone, Copy, Debug, Default)]
 struct UnitFriction {
-    /// Change of velocity, m/s.
-    velocity: DVec3,
-    /// Energy that it takes, J/kg.
+    /// Impulse, kg m/s.
+    impulse: DVec3,
+    /// Energy that it takes, J.
     taken: f64,
 }
 
@@ -51,13 +51,13 @@ impl Repayment {
         }
         let (view, rows) = step.world.body_view(id);
         self.rubs.resize(rows.len(), UnitFriction::default());
-        let pass = FrictionPass { cloud, rows: rows.clone() };
+        let rest_density = cloud.state(id).map_or(0.0, |state| state.density);
+        let pass = FrictionPass { cloud, rows: rows.clone(), rest_density };
         cloud.for_each_row(rows.start, &mut self.rubs, &mut self.sums, &pass);
         let mut velocity = view.write::<Velocity>()?;
         let (mass, removed) = (view.read::<Mass>()?, view.read::<Removed>()?);
-        let both = (&self.rubs[..], &mass[rows.clone()]);
-        let taken = sum_over_blocks(both, &|_, (rubs, mass): (&[UnitFriction], &[Mass])| {
-            rubs.iter().zip(mass).map(|(rub, m)| m.0 * rub.taken).sum::<f64>()
+        let taken = sum_over_blocks(&self.rubs[..], &|_, rubs: &[UnitFriction]| {
+            rubs.iter().map(|rub| rub.taken).sum::<f64>()
         });
         if taken <= 0.0 {
             return Ok(());
@@ -68,7 +68,7 @@ impl Repayment {
         let lost = sum_over_blocks(slices, &|_, (velocity, rubs, mass, removed): Rows<'_>| {
             let mut lost = 0.0;
             for k in (0..velocity.len()).filter(|&k| removed[k] == Removed::NO) {
-                let (v, change) = (velocity[k].0, strength * rubs[k].velocity);
+                let (v, change) = (velocity[k].0, strength * rubs[k].impulse / mass[k].0);
                 lost -= mass[k].0 * change.dot(v + 0.5 * change);
                 velocity[k].0 = v + change;
             }
@@ -84,6 +84,8 @@ impl Repayment {
 struct FrictionPass<'a> {
     cloud: &'a FlowCloud,
     rows: Range<usize>,
+    /// Density at zero pressure rho_0, kg/m3: masses of particles would make forces of pairs unequal.
+    rest_density: f64,
 }
 
 impl RowPass<1, 2> for FrictionPass<'_> {
@@ -113,7 +115,8 @@ impl RowPass<1, 2> for FrictionPass<'_> {
     }
 
     #[inline(always)]
-    fn output(&self, _: usize, &[velocity, taken]: &[DVec3; 2]) -> UnitFriction {
-        UnitFriction { velocity, taken: taken.x }
+    fn output(&self, i: usize, &[velocity, taken]: &[DVec3; 2]) -> UnitFriction {
+        let mass = self.rest_density * self.cloud.volume(i);
+        UnitFriction { impulse: mass * velocity, taken: mass * taken.x }
     }
 }

@@ -29,6 +29,6 @@ pub use ends::WallEnds;
 pub use gaps::GapPressure;
 pub use repulsion::{RangeShortfall, Repulsion};
 pub use surface_distance::apart;
-pub use wall::{PreviousVelocity, Slip, Wall, WallBody};
+pub use wall::{PreviousVelocity, Slip, Wall, WallBody, has_suction};
 pub use wall_compression::WallCompression;
 pub use wall_state::WallState;

@@ -49,6 +49,14 @@ pub struct WallBody {
     pub parameters: Wall,
 }
 
+/// Whether the flow has no free surface, so that bodies in it have suction: where a wall has it, or where the
+/// domain has no end.
+pub fn has_suction(sim: &SimBuilder<'_>) -> bool {
+    let endless = sim.periodic().axes().iter().take(sim.dimension().count()).all(|&repeats| repeats);
+    let walls = sim.scene().bodies.iter().filter(|body| body.formulation.name() == Wall::NAME);
+    endless || walls.filter_map(|wall| wall.formulation.parse::<Wall>().ok()).any(|wall| wall.suction)
+}
+
 impl Formulation for Wall {
     const NAME: &'static str = "Wall";
     const REFERENCE: &'static str =
