@@ -4,6 +4,9 @@
 //! density over that of the start, `s = 1 / det F`, and `c = sqrt(K / rho_0)`. The gradient g is that of
 //! fluids; the paper has none. Without it, bending, which is a linear field of pressure, would be diffused
 //! away.
+//!
+//! A failed particle bears no tension. Where it is open, `s < 1`, it counts with s = 1, the density without
+//! pressure: otherwise what is intact beside debris would be expanded towards the density of a void.
 
 use meshless_engine::bytemuck;
 use meshless_engine::correction::MomentMatrix;
@@ -11,10 +14,11 @@ use meshless_engine::formulations::eulerian::DilatationRate;
 use meshless_engine::glam::DVec3;
 use meshless_engine::parallel::{Maximum, for_each_block};
 use meshless_engine::plugin::{SetupError, SimBuilder};
-use meshless_engine::schedule::{Mode, Run, Stage, Step, StepError, System};
+use meshless_engine::schedule::{Access, Mode, Run, Stage, Step, StepError, System};
 use meshless_engine::solids::{PACKED_SOLID, PresentPair, PresentPairs, PresentVolumes, fill_rows};
 use meshless_engine::world::{
-    BodyId, BodySet, DeformationGradient, Position, ReferenceVolume, Removed, SupportRadius,
+    BodyId, BodySet, Column, ColumnSet, Damage, DeformationGradient, Position, ReferenceVolume, Removed,
+    SupportRadius,
 };
 
 use crate::Model;
@@ -25,9 +29,12 @@ const SAFETY: f64 = 0.5;
 /// Adds the system that finds the rates at the end of each step of the bodies.
 pub fn add(bodies: &BodySet, model: Model, delta: f64, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     let mut diffusers = Vec::new();
+    let mut state = ColumnSet::default();
     for body in bodies.iter() {
         let plan = sim.body(body);
-        let bulk = plan.solid_law()?.elastic().bulk;
+        let law = plan.solid_law()?;
+        law.state(&mut state);
+        let bulk = law.elastic().bulk;
         let speed = (bulk / plan.material.density).sqrt();
         diffusers.push(Diffuser { body, speed: 2.0 * delta * speed });
     }
@@ -44,8 +51,10 @@ pub fn add(bodies: &BodySet, model: Model, delta: f64, sim: &mut SimBuilder<'_>)
         sums: Vec::new(),
     };
     let phases = sim.phases_of(bodies);
+    let damage = state.get(Damage::NAME).map(|_| Access { column: Damage::NAME, mode: Mode::ReadsNear });
     sim.add_system(
         System::new(Stage::PostStep, "density_diffusion", diffusion)
+            .touches_all(damage)
             .on_phases(phases)
             .by_body()
             .reads_near::<Position>()
@@ -98,12 +107,20 @@ impl Diffusion {
         let strength = speed * 0.5 * view.read::<SupportRadius>()?[rows.start].0;
         let deformation = view.read::<DeformationGradient>()?;
         let deformation = &deformation[..];
+        let damage = if view.has::<Damage>() { Some(view.read_near::<Damage>()?) } else { None };
+        let damage: &[Damage] = damage.as_deref().unwrap_or_default();
+        let has_failed = |row: usize| damage.get(row).is_some_and(|damage| damage.0 >= 1.0);
         let Self { volumes, densities, gradients, sums, .. } = self;
         let volumes = volumes.of_body(&view, &rows)?;
         densities.resize(volumes.len(), 0.0);
         gradients.resize(volumes.len(), DVec3::ZERO);
         fill_rows(&mut densities[rows.clone()], rows.start, |row| {
-            if volumes[row] > 0.0 { 1.0 / deformation[row].0.determinant() } else { 0.0 }
+            let density = 1.0 / deformation[row].0.determinant();
+            match volumes[row] > 0.0 {
+                true if has_failed(row) => density.max(1.0),
+                true => density,
+                false => 0.0,
+            }
         });
         let pairs = PresentPairs { solid: &*solid, position: bytemuck::cast_slice(&position), volumes };
         let field = DensityField { pairs, densities, axes: self.axes };
