@@ -1,15 +1,18 @@
-//! Tips of Eulerian bodies, whose particles have few neighbours: the share of the strain rate that they have,
-//! and what it keeps, against sums over all pairs that are written out here.
+//! Tips and debris of Eulerian bodies: the share of the strain rate of particles with few neighbours, what it
+//! keeps, and the diffusion of density beside failed particles, against sums over all pairs that are written
+//! out here.
 
 mod common;
 
 use common::eulerian::{Particle, particles};
 use common::simulation;
+use meshless::formulations::eulerian::DilatationRate;
 use meshless::glam::{DMat3, DVec3};
 use meshless::kernels::{Kernel, KernelName};
 use meshless::linalg::Sym3;
 use meshless::scene::Source;
 use meshless::simulation::Simulation;
+use meshless::world::{BodyId, Damage};
 
 const SPACING: f64 = 0.05;
 
@@ -110,4 +113,37 @@ fn a_tip_that_turns_keeps_its_momenta_and_does_not_shorten_the_step() {
     let sound = (1.0 * 0.7 / (1.3 * 0.4_f64)).sqrt();
     let whole = 0.65 * 2.0 * SPACING / (sound * (1.45 * 1.28_f64).sqrt());
     assert!(shortest > 0.4 * whole, "{shortest} s of {whole} s");
+}
+
+/// What has failed and is open bears no pressure: what is intact beside it is not expanded towards a void.
+#[test]
+fn open_failed_particles_count_with_the_density_without_pressure() {
+    let delta = 0.1;
+    let mut sim = simulation(&Source::new(
+        "debris.ron",
+        format!(
+            r#"(dimension: Two, materials: {{"m": NeoHookean(density: 1, young: 1, poisson: 0.3)}},
+            bodies: [(name: "b", material: "m", shape: Box(min: (0, 0), max: (1.0, 0.6)), spacing: {SPACING}, formulation: Eulerian(),
+                plugins: [density_diffusion(model: Molteni, delta: {delta}),
+                    failure(criterion: MaximumPrincipalStrain(limit: 0.2), then: NoDeviator)])],
+            conditions: [InitialDisplacement(on: Select(body: "b", within: Box(min: (0.5, -1), max: (2, 2))), value: ("0.5*(x - 0.5)", "0"))],
+            time: (end: 100.0))"#
+        ),
+    ));
+    sim.run(|sim| sim.clock().step < 1).expect("a step");
+    let (all, (view, _)) = (particles(&sim), sim.world().body_view(BodyId(0)));
+    let (rate, damage) =
+        (view.read::<DilatationRate>().expect("rates"), view.read::<Damage>().expect("damage"));
+    let ratio = |i: usize| all[i].deformation.determinant();
+    let density = |i: usize| if damage[i].0 < 1.0 { 1.0 / ratio(i) } else { (1.0 / ratio(i)).max(1.0) };
+    let open = (0..all.len()).filter(|&i| damage[i].0 >= 1.0 && ratio(i) > 1.1).count();
+    assert!(open > 20, "{open} particles have failed");
+    // Plane strain: K = E / (3 (1 - 2 nu)), of unit density.
+    let (h, sound) = (1.3 * SPACING, (1.0 / (3.0 * 0.4_f64)).sqrt());
+    let largest = rate.iter().map(|rate| rate.0.abs()).fold(0.0, f64::max);
+    for i in 0..all.len() {
+        let sum: f64 = pairs(&all, i).map(|(j, w, _)| w * ratio(j) * (density(j) - density(i))).sum();
+        let expected = -2.0 * delta * h * sound * sum / density(i);
+        assert!((rate[i].0 - expected).abs() < 1e-10 * largest, "{} and {expected}", rate[i].0);
+    }
 }
