@@ -124,7 +124,7 @@ fn of_combinations_is_refused_where_it_is_not_known() {
         ("Difference(Box(min: (0, 0), max: (1, 1)), Box(min: (0, 0), max: (0.5, 0.5)))", "tool"),
         ("Intersection([Box(min: (0, 0), max: (1, 1)), HalfSpace(point: (0, 0), normal: (1, 1))])", "tool"),
         (
-            "Translate(shape: Scale(shape: Sphere(center: (0, 0), radius: 1), by: (1, 2)), by: (1, 1))",
+            "Translate(shape: Scale(shape: Ring(center: (0, 0), inner: 0.5, outer: 1), by: (1, 2)), by: (1, 1))",
             "tool.shape",
         ),
         ("Points(file: \"particles.csv\")", "tool"),
