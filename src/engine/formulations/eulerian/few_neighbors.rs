@@ -6,9 +6,9 @@
 //!
 //! `s_i = min(1, 12 d / tr M_i^-1)`
 //!
-//! of its strain rate, and all of its spin: `L' = skew L + s sym L`. The force is the adjoint, from
-//! `skew tau + s sym tau`: the power of the stress is that of the strain, and the spin of a particle that
-//! rotates with its neighbours is exact, so that angular momentum is conserved.
+//! of its strain rate, and all of its spin: `L' = skew L + s sym L`. The force is the adjoint, from `skew tau
+//! + s sym tau`: the power of the stress is that of the strain, and the spin of a particle that rotates with
+//! its neighbours is exact, so that angular momentum is conserved.
 
 use glam::DMat3;
 
