@@ -6,7 +6,6 @@
 
 use glam::DMat3;
 
-use super::near::NearbyMotion;
 use super::rows::EulerianRows;
 use crate::column;
 use crate::parallel::sum_over_blocks;
@@ -69,7 +68,7 @@ impl Dilatation {
 impl EulerianRows {
     /// tr(tau) V_0 over the axes, with the stress that the force is computed from, J.
     fn held(&self, row: usize) -> f64 {
-        let NearbyMotion { inverse_moment: inverse, strain_share, .. } = self.near.around[row];
+        let inverse = self.near.around[row].inverse_moment;
         let corrected = self.stresses[row].columns.map(|column| column.xyz());
         let volume = self.points[row].place.0[3];
         if volume <= 0.0 || inverse.trace() <= 0.0 {
@@ -78,11 +77,10 @@ impl EulerianRows {
         let moment =
             if self.plane { plane_inverse(&inverse.to_matrix()) } else { inverse.inverse().to_matrix() };
         let stress = DMat3::from_cols(corrected[0], corrected[1], corrected[2]) * moment;
-        // The change of volume is not that of the motion: it has no share.
         if self.plane {
-            0.5 * (stress.x_axis.x + stress.y_axis.y) * volume / strain_share
+            0.5 * (stress.x_axis.x + stress.y_axis.y) * volume
         } else {
-            (stress.x_axis.x + stress.y_axis.y + stress.z_axis.z) / 3.0 * volume / strain_share
+            (stress.x_axis.x + stress.y_axis.y + stress.z_axis.z) / 3.0 * volume
         }
     }
 }

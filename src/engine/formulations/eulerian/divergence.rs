@@ -4,7 +4,6 @@ use glam::DMat3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::few_neighbors::strained;
 use super::near::NearbyMotion;
 use super::particle::EulerianParticle;
 
@@ -30,7 +29,7 @@ pub(super) fn corrected(
     point: &EulerianParticle,
 ) -> DMat3 {
     match divergence {
-        Divergence::Adjoint => strained(*stress, around.strain_share) * around.inverse_moment.to_matrix(),
+        Divergence::Adjoint => *stress * around.inverse_moment.to_matrix(),
         Divergence::Shepard => {
             let (reference, volume) = (point.place.0[3], point.velocity.0[3]);
             let density = mass / volume;

@@ -25,7 +25,6 @@ mod control_rows;
 mod dilatation;
 mod divergence;
 mod elsewhere;
-mod few_neighbors;
 mod force;
 mod lists;
 mod near;

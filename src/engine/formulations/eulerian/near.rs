@@ -1,7 +1,6 @@
 //! The neighbours within the support at the end of a step, with their weights, and the sums that correct the
 //! gradient.
 
-use super::few_neighbors::strain_share;
 use super::particle::EulerianParticle;
 use super::within::{CHUNK, Within};
 use crate::correction::MomentMatrix;
@@ -21,8 +20,6 @@ pub(super) struct NearbyMotion {
     pub count: u32,
     /// Inverse of M_i; zero for a particle with too few neighbours.
     pub inverse_moment: Sym3,
-    /// Share of its strain rate that it has ([`few_neighbors`](super::few_neighbors)).
-    pub strain_share: f64,
     /// `sum_j V_0,j w_ij x_ij`, 1/m.
     pub first_moment: glam::DVec3,
     /// `sum_j V_0,j w_ij`, 1/m2.
@@ -157,14 +154,9 @@ impl<K: KernelProfile> PlaneOrSpace for PairLoop<'_, '_, K> {
             }
             let inverse_moment =
                 MomentMatrix::of_columns(&moment).inverse_above(MIN_SPREAD).unwrap_or_default();
-            rows.around[k] = NearbyMotion {
-                count: count as u32,
-                inverse_moment,
-                strain_share: strain_share(&inverse_moment, D as f64),
-                first_moment: first_moment.xyz(),
-                weight_sum,
-                filled,
-            };
+            let count = count as u32;
+            rows.around[k] =
+                NearbyMotion { count, inverse_moment, first_moment: first_moment.xyz(), weight_sum, filled };
         }
     }
 }

@@ -7,7 +7,6 @@
 use glam::{DMat3, DVec3};
 
 use super::dilatation::{DilatationRate, gradient};
-use super::few_neighbors::{strain_share, strained};
 use super::near::MIN_SPREAD;
 use super::particle::EulerianParticle;
 use super::rows::{EulerianRows, PointColumns};
@@ -176,8 +175,7 @@ impl<K: KernelProfile> PlaneOrSpace for AdvanceLoop<'_, K> {
                 continue;
             };
             let l = fit::<A, D>(a, &spread, &inverse);
-            let l = DMat3::from_cols(l[0].xyz(), l[1].xyz(), l[2].xyz());
-            let mut rate = strained(l, strain_share(&inverse, D as f64));
+            let mut rate = DMat3::from_cols(l[0].xyz(), l[1].xyz(), l[2].xyz());
             if let Some(dilatation) = dilatation {
                 rate += gradient(dilatation[first + k].0, D == 2);
             }

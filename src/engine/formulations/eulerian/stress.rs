@@ -218,8 +218,7 @@ impl Stress {
             type Rows<'a> = (&'a [NearbyMotion], &'a [f64]);
             let fastest: Maximum = sum_over_blocks(rows, &|_, (around, stiffness): Rows<'_>| {
                 let step = |(of, stiffness): (&NearbyMotion, &f64)| {
-                    // Strain rate and force have the share each.
-                    let inverse = of.strain_share * of.strain_share * of.inverse_moment.trace() / axes;
+                    let inverse = of.inverse_moment.trace() / axes;
                     1.0 / own.estimate.stable_step_with_pairs(of.weight_sum, inverse, *stiffness)
                 };
                 let with_stress =
