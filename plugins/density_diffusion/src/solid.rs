@@ -115,12 +115,11 @@ impl Diffusion {
         densities.resize(volumes.len(), 0.0);
         gradients.resize(volumes.len(), DVec3::ZERO);
         fill_rows(&mut densities[rows.clone()], rows.start, |row| {
-            let density = 1.0 / deformation[row].0.determinant();
-            match volumes[row] > 0.0 {
-                true if has_failed(row) => density.max(1.0),
-                true => density,
-                false => 0.0,
+            if volumes[row] <= 0.0 {
+                return 0.0;
             }
+            let density = 1.0 / deformation[row].0.determinant();
+            if has_failed(row) { density.max(1.0) } else { density }
         });
         let pairs = PresentPairs { solid: &*solid, position: bytemuck::cast_slice(&position), volumes };
         let field = DensityField { pairs, densities, axes: self.axes };
