@@ -1,4 +1,4 @@
-//! What contact and loads cannot do well is told: edges at sides held along their normals.
+//! What contact and loads cannot do well is told: edges at sides held along their normals, chatter.
 
 mod common;
 
@@ -56,4 +56,50 @@ fn a_load_by_surface_that_reaches_a_side_held_along_its_normal_is_warned_of() {
     // The far side ends elsewhere.
     assert!(!warns(side, "Facing(1, 0)"));
     assert!(!warns("Symmetry(plane: X, at: 0)", "Facing(0, 1)"));
+}
+
+/// Whether a block is said to chatter that slides down a slope, by so many degrees steeper than that at which
+/// friction holds it, for .6 s.
+fn chatters_on_a_slope(excess: f64, plugins: &str) -> bool {
+    let angle = 0.3f64.atan() + excess.to_radians();
+    let (along, down) = (9.81 * angle.sin(), 9.81 * angle.cos());
+    let mut sim = built(format!(
+        r#"(dimension: Two, gravity: ({along:?}, -{down:?}), materials: {{"m": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)}},
+        bodies: [
+            (name: "floor", material: "m", shape: Box(min: (-1, -0.2), max: (4, 0)), spacing: 0.05, formulation: Rigid()),
+            (name: "block", material: "m", shape: Box(min: (0, 0), max: (0.4, 0.4)), spacing: 0.025, formulation: TotalLagrangian(), plugins: [{plugins}]),
+        ],
+        conditions: [Fix(on: Select(body: "floor"))],
+        contacts: [(between: ("block", "floor"), friction: 0.3)], time: (end: 0.6))"#
+    ));
+    sim.run(|_| true).expect("a run");
+    says(&sim, "bodies `block` and `floor` chatter: until ")
+}
+
+#[test]
+fn a_block_that_chatters_as_it_slides_is_warned_of() {
+    assert!(chatters_on_a_slope(0.5, "hourglass_control()"));
+    assert!(!chatters_on_a_slope(0.5, "hourglass_control(), artificial_viscosity()"));
+    // All of it slides all the time.
+    assert!(!chatters_on_a_slope(13.3, "hourglass_control()"));
+}
+
+/// Points of a body that rolls stick once in each turn.
+#[test]
+fn a_body_that_rolls_or_bounces_does_not_chatter() {
+    let says_of = |height: f64, velocity: &str, end: f64| {
+        let mut sim = built(format!(
+            r#"(dimension: Two, gravity: (0, -9.81), materials: {{"m": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)}},
+            bodies: [
+                (name: "floor", material: "m", shape: Box(min: (-1, -0.2), max: (4, 0)), spacing: 0.05, formulation: Rigid()),
+                (name: "disc", material: "m", shape: Sphere(center: (0, {height}), radius: 0.1), spacing: 0.0125, lattice: Concentric, formulation: TotalLagrangian(), plugins: [hourglass_control()]),
+            ],
+            conditions: [Fix(on: Select(body: "floor")), InitialVelocity(on: Select(body: "disc"), value: {velocity})],
+            contacts: [(between: ("disc", "floor"), friction: 0.3)], time: (end: {end:?}))"#
+        ));
+        sim.run(|_| true).expect("a run");
+        says(&sim, "chatter")
+    };
+    assert!(!says_of(0.1, r#"("1 + 10*(y - 0.1)", "-10*x")"#, 0.3));
+    assert!(!says_of(0.12, r#"(1, -1)"#, 1.0));
 }

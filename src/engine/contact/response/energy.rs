@@ -32,7 +32,7 @@ impl ContactEnergy {
     /// Of springs in their first step, which have taken over: they act in the kick that follows, and have not
     /// in the one before.
     pub fn taken_over(self) -> Self {
-        let Losses { damping, friction } = self.losses;
+        let Losses { damping, friction, .. } = self.losses;
         Self { changed: -(self.stored + self.ahead + damping + friction), ..self }
     }
 }

@@ -25,6 +25,8 @@ pub(in crate::contact) struct History {
     pub arms: [DVec3; 2],
     /// Force along the normal, N.
     pub pressure: f64,
+    /// Whether the tangential force is at Coulomb's limit.
+    pub slides: bool,
 }
 
 impl History {

@@ -13,6 +13,7 @@
 use glam::DVec3;
 
 use super::history::History;
+use super::sliding::Sliding;
 use crate::contact::laws::{NormalForce, Spring, Touch};
 
 /// Interaction of two bodies in contact.
@@ -60,6 +61,7 @@ pub(in crate::contact) struct Response {
 pub(in crate::contact) struct Losses {
     pub damping: f64,
     pub friction: f64,
+    pub sliding: Sliding,
 }
 
 /// Limits of the tangential force of a contact.
@@ -69,6 +71,15 @@ struct Limits {
     stiffness: f64,
     /// Coulomb's limit, N.
     force: f64,
+}
+
+/// Forces of the tangential spring and dashpot on the first side, N.
+#[derive(Default)]
+struct Tangential {
+    spring: DVec3,
+    drag: DVec3,
+    /// Whether they are at Coulomb's limit.
+    slides: bool,
 }
 
 impl Interaction {
@@ -144,7 +155,8 @@ impl Interaction {
         let pressure = (spring.force + damping).max(0.0);
         let stiffness = self.tangential * spring.stiffness;
         let limits = Limits { stiffness, force: self.friction * pressure };
-        let (tangential, drag) = self.tangential(state, limits, &inverse_mass, dt, before);
+        let Tangential { spring: tangential, drag, slides } =
+            self.tangential(state, limits, &inverse_mass, dt, before);
         let dashpot = (pressure - spring.force) * *normal + drag;
         let (overlap, arms) = (touch.overlap, *arms);
         Response {
@@ -158,6 +170,7 @@ impl Interaction {
                 offset: before.offset,
                 arms,
                 pressure,
+                slides,
             },
         }
     }
@@ -186,7 +199,6 @@ impl Interaction {
         c * (speed - half * force) / (1.0 + half * c)
     }
 
-    /// Forces of the tangential spring and dashpot on the first side, N.
     fn tangential(
         &self,
         state: &ContactState,
@@ -194,9 +206,9 @@ impl Interaction {
         inverse_mass: &impl Fn(DVec3) -> f64,
         dt: f64,
         before: &History,
-    ) -> (DVec3, DVec3) {
+    ) -> Tangential {
         if self.friction == 0.0 {
-            return (DVec3::ZERO, DVec3::ZERO);
+            return Tangential::default();
         }
         let ContactState { normal, velocity, acceleration, .. } = state;
         let slip = velocity - velocity.dot(*normal) * normal;
@@ -208,7 +220,8 @@ impl Interaction {
         spring -= stiffness * dt * slip;
         let held = spring.length();
         if held >= limit {
-            return (if held > 0.0 { spring * (limit / held) } else { DVec3::ZERO }, DVec3::ZERO);
+            let spring = if held > 0.0 { spring * (limit / held) } else { DVec3::ZERO };
+            return Tangential { spring, drag: DVec3::ZERO, slides: true };
         }
         let along = slip.normalize_or(spring.normalize_or_zero());
         let drag_before = before.dashpot - before.dashpot.dot(*normal) * normal;
@@ -216,7 +229,8 @@ impl Interaction {
         let (late, pull) = ((slip + 0.5 * dt * acceleration).dot(along), (taken_up - spring).dot(along));
         let drag = -self.dashpot(stiffness, inverse_mass(along), late, pull, dt) * along;
         let remaining = limit - held;
-        (spring, if drag.length() > remaining { drag * (remaining / drag.length()) } else { drag })
+        let drag = if drag.length() > remaining { drag * (remaining / drag.length()) } else { drag };
+        Tangential { spring, drag, slides: false }
     }
 }
 
@@ -246,6 +260,7 @@ impl Losses {
     pub fn add(&mut self, other: &Self) {
         self.damping += other.damping;
         self.friction += other.friction;
+        self.sliding.add(&other.sliding);
     }
 
     /// Adds the work of the forces of a contact at one end of the step, with the velocity of the first side
@@ -258,6 +273,7 @@ impl Losses {
 
     /// Adds that the tangential spring keeps a part of it.
     pub fn keep(&mut self, share: f64, before: &History, now: &History) {
+        self.sliding.take_in(share, before, now);
         self.friction -= share * (now.energy() - before.energy());
     }
 }

@@ -4,6 +4,8 @@ mod history;
 
 mod interaction;
 
+mod sliding;
+
 pub(super) mod energy;
 
 pub(super) mod time_step;
@@ -11,3 +13,4 @@ pub(super) mod time_step;
 pub(super) use energy::{CHANGE_OF_SURFACE, ContactEnergy};
 pub(super) use history::{Histories, History, PairKey};
 pub(super) use interaction::{ContactState, Interaction, Losses};
+pub(super) use sliding::Sliding;

@@ -1,6 +1,7 @@
 //! The system of all contacts of a scene.
 
 use super::beside_held::ReachedSide;
+use super::chatter::Chatter;
 use super::fragile::{ContactActivity, FailingSkins, break_skins};
 use super::touching::{Saved, Touching};
 use crate::contact::bodies::{CONTACT, MotionBounds, NodeTurn};
@@ -38,6 +39,7 @@ pub(in crate::contact) fn add(sim: &mut SimBuilder<'_>, planned: Planned, bodies
         bodies: bodies.iter().map(|body| InContact::of(body, &touching)).collect(),
         stored: bodies.iter().map(|body| (body, 0.0)).collect(),
         energies: Vec::with_capacity(touching.len()),
+        chatter: vec![Chatter::default(); touching.len()],
         gone: Vec::new(),
         reached: bodies.iter().flat_map(|body| ReachedSide::of(sim.body(body))).collect(),
         touching,
@@ -85,6 +87,8 @@ struct Contacts {
     /// The bodies that can fail and touch with their skins until then.
     fragile: Vec<FailingSkins>,
     energies: Vec<((BodyId, BodyId), ContactEnergy)>,
+    /// Whether each of them chatters.
+    chatter: Vec<Chatter>,
     /// Rigid bodies that have been removed from the run.
     gone: Vec<BodyId>,
     /// Sides held along their normals that contact may reach.
@@ -153,6 +157,7 @@ impl Contacts {
             let pair = &mut self.touching[k];
             let [first, second] = pair.bodies();
             let mut energies = pair.run(step, [motion_of(first), motion_of(second)], beside)?;
+            self.chatter[k].look([first, second], &energies.losses.sliding, step);
             if self.acts[k].begins(&self.fragile) {
                 energies = energies.taken_over();
             }
@@ -246,14 +251,17 @@ impl Run for ContactSystem {
         let contacts = resources.of(self.0);
         let saved: Vec<Saved> = contacts.touching.iter().map(Touching::saved).collect();
         let whole: Vec<bool> = contacts.fragile.iter().map(FailingSkins::is_whole).collect();
-        postcard::to_stdvec(&(saved, whole)).unwrap_or_default()
+        postcard::to_stdvec(&(saved, whole, &contacts.chatter)).unwrap_or_default()
     }
 
     fn restore_with(&mut self, state: &[u8], resources: &Resources) -> bool {
-        let Ok((saved, whole)) = postcard::from_bytes::<(Vec<Saved>, Vec<bool>)>(state) else { return false };
+        type State = (Vec<Saved>, Vec<bool>, Vec<Chatter>);
+        let Ok((saved, whole, chatter)) = postcard::from_bytes::<State>(state) else { return false };
         let mut contacts = resources.of_mut(self.0);
+        contacts.chatter = chatter;
         contacts.fragile.iter_mut().zip(&whole).for_each(|(fragile, &whole)| fragile.restore(whole));
         whole.len() == contacts.fragile.len()
+            && contacts.chatter.len() == contacts.touching.len()
             && saved.len() == contacts.touching.len()
             && contacts.touching.iter_mut().zip(saved).all(|(pair, saved)| pair.restore(saved))
     }

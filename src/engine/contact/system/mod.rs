@@ -6,6 +6,8 @@ mod touching;
 
 mod beside_held;
 
+mod chatter;
+
 mod contacts;
 
 pub(super) use contacts::{Planned, add};

@@ -1,0 +1,61 @@
+//! Warning of chatter: points that slide stick again and again, because friction drives vibrations that
+//! nothing damps. Friction then falls short of Coulomb's.
+//!
+//! Points that slide stick once as a body comes to rest, and once in each passage of a rolling body; those of
+//! bodies that chatter do so every period of a vibration, some hundred steps. A sum of what sticks in excess
+//! of a small rate (E. S. Page, Biometrika 41 (1954) 100) grows in the latter case only.
+
+use serde::{Deserialize, Serialize};
+
+use crate::contact::response::Sliding;
+use crate::notation::quantity;
+use crate::schedule::Step;
+use crate::world::BodyId;
+
+/// Steps over which the share of what slides is averaged.
+const AVERAGE: f64 = 100.0;
+/// Mean share of what slides, above which a contact slides.
+const SLIDES: f64 = 0.3;
+/// How often a point may stick in a step.
+const RATE: f64 = 1.0 / 500.0;
+/// How often, beyond that, until there is a warning.
+const TIMES: f64 = 20.0;
+
+/// Whether a contact chatters.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub(super) struct Chatter {
+    /// Mean share of what slides.
+    share: f64,
+    /// How often its points have stuck, beyond what is usual.
+    times: f64,
+    is_told: bool,
+}
+
+impl Chatter {
+    /// Takes in a step of a contact of these bodies, and warns once.
+    pub fn look(&mut self, bodies: [BodyId; 2], sliding: &Sliding, step: &mut Step<'_>) {
+        if self.is_told {
+            return;
+        }
+        if sliding.load <= 0.0 {
+            *self = Self::default();
+            return;
+        }
+        self.share += (sliding.slides / sliding.load - self.share) / AVERAGE;
+        let stuck = if self.share > SLIDES { sliding.caught / sliding.load } else { 0.0 };
+        self.times = (self.times + stuck - RATE).max(0.0);
+        if self.times < TIMES {
+            return;
+        }
+        self.is_told = true;
+        let [first, second] = bodies.map(|body| step.world.body(body).name.clone());
+        let begin = format!("bodies `{first}` and `{second}` chatter:");
+        // The points of both on the other are two contacts.
+        if !step.warnings.iter().any(|warning| warning.starts_with(&begin)) {
+            step.warnings.push(format!(
+                "{begin} until {} points that slide have stuck again {TIMES} times, because friction drives vibrations that nothing damps, and it falls short of its coefficient; `artificial_viscosity()` in the plugins of deformable bodies damps them, and so does a restitution below 1 between rigid ones",
+                quantity(step.clock.end(), "s")
+            ));
+        }
+    }
+}
