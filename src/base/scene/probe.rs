@@ -68,7 +68,8 @@ pub struct Line {
 /// Reduction over a selection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Reduction {
-    /// The mean: every particle has the same weight, a `surface` is weighted by area.
+    /// The mean, weighted by mass: of a rigid body the motion of its mass centre. A `surface` is weighted by
+    /// area.
     Mean,
     /// The sum over the particles.
     Sum,

@@ -42,6 +42,7 @@ impl Gauge {
     pub fn needs(&self) -> Vec<&'static str> {
         match self {
             Self::Torque(_) => TorqueGauge::NEEDS.to_vec(),
+            Self::Particles(gauge) => gauge.needs(),
             Self::Measure(gauge) => gauge.needs(),
             _ => self.field().map(ChosenField::needs).unwrap_or_default(),
         }

@@ -17,7 +17,11 @@ fn text(probe: &str) -> String {
 
 /// The first row of the series of the probe, with the names of the columns, without time.
 fn first(probe: &str) -> Vec<(String, f64)> {
-    let (scene, source) = parse(Source::new("test.ron", text(probe))).unwrap_or_else(|e| panic!("{e}"));
+    first_of(text(probe))
+}
+
+fn first_of(text: String) -> Vec<(String, f64)> {
+    let (scene, source) = parse(Source::new("test.ron", text)).unwrap_or_else(|e| panic!("{e}"));
     let folder = tempfile::tempdir().unwrap();
     let options = BuildOptions::into_folder(folder.path());
     let mut sim =
@@ -37,6 +41,18 @@ fn near(found: &[(String, f64)], wanted: &[(&str, f64)]) {
     for ((name, value), (wanted_name, wanted)) in found.iter().zip(wanted) {
         assert!(name == wanted_name && (value - wanted).abs() < 1e-12, "{found:?} {wanted:?}");
     }
+}
+
+#[test]
+fn the_mean_position_of_a_rigid_body_is_its_mass_centre() {
+    // The particles of a triangle are those of a lattice whose places it contains.
+    let found = first_of(
+        r#"(dimension: Two, materials: {"m": Steel},
+            bodies: [(name: "b", material: "m", shape: Polygon(points: [(0, 0), (0.9, 0), (0, 0.6)]), spacing: 0.1, formulation: Rigid())],
+            probes: [(name: "p", on: Select(body: "b"), quantity: Position)], time: (end: 1e-6, step: Fixed(1e-6)))"#
+            .to_owned(),
+    );
+    near(&found, &[("x", 0.3), ("y", 0.2)]);
 }
 
 #[test]
