@@ -13,10 +13,15 @@ use crate::space::Dimension;
 const SAME: f64 = 0.9;
 /// How far beside the particle another face counts as equally near, over the spacing.
 const ASIDE: f64 = 1e-3;
+/// Distance from a face within which a particle is of its outermost layer, over the spacing.
+pub(super) const NEAR: f64 = 0.75;
+/// Distance of a foot from the surface up to which its face is flat, over the spacing.
+const FLAT: f64 = 1e-6;
 
 /// Finds the faces near particles.
 pub(super) struct NearestFaces<'a> {
     surface: &'a dyn Surface,
+    spacing: f64,
     /// Ways to places beside a particle, each of which is nearest to one face: in none of them two faces of a
     /// corner are alike.
     beside: Vec<DVec3>,
@@ -32,7 +37,7 @@ impl<'a> NearestFaces<'a> {
         let plane = [-1, 0, 1].into_iter().flat_map(|x| [-1, 0, 1].map(|y| (x, y)));
         let all = plane.flat_map(|(x, y)| axes.iter().map(move |&z| DVec3::from([x, y, z].map(f64::from))));
         let beside = all.filter_map(DVec3::try_normalize).map(|way| ASIDE * spacing * (skew * way)).collect();
-        Self { surface, beside }
+        Self { surface, spacing, beside }
     }
 
     /// The foot of a place on every face that it is nearest to, from the nearest point of the surface.
@@ -46,6 +51,22 @@ impl<'a> NearestFaces<'a> {
             }
         }
         faces
+    }
+
+    /// The foot of a place on the flat face beyond the edge of the one that it is nearest to, if the place is
+    /// in the outermost layer of both, but nearer to one. Beside the round side of a disc the flat ends would
+    /// else have no points in their outermost half spacing.
+    pub fn across(&self, place: DVec3, nearest: SurfacePoint) -> Option<SurfacePoint> {
+        let Self { surface, spacing, .. } = *self;
+        let aside = spacing * nearest.normal;
+        let face = surface.closest(place - aside);
+        let point = face.point + aside - aside.dot(face.normal) * face.normal;
+        let distance = place.distance(point);
+        let is_nearer_to_one = distance - nearest.signed_distance.abs() > 2.0 * ASIDE * spacing;
+        let is_other = face.normal.dot(nearest.normal) < SAME;
+        let is_there = || surface.closest(point).signed_distance.abs() < FLAT * spacing;
+        (distance < NEAR * spacing && is_nearer_to_one && is_other && is_there())
+            .then_some(SurfacePoint { point, ..face })
     }
 }
 

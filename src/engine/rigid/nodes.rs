@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use glam::DVec3;
 
-use super::faces::NearestFaces;
+use super::faces::{NEAR, NearestFaces};
 use super::inertia::sphere_of;
 use super::outline::{Outline, Rim};
 use crate::shapes::{Shape, Site, Surface};
@@ -123,10 +123,12 @@ impl Nodes {
         let faces = NearestFaces::new(surface, spacing, dimension);
         for site in sites {
             let nearest = surface.closest(site.position);
-            if nearest.signed_distance.abs() >= 0.75 * spacing {
+            if nearest.signed_distance.abs() >= NEAR * spacing {
                 continue;
             }
-            for face in faces.of(site.position, nearest).into_iter().filter(|face| !is_round(face.point)) {
+            let mut near = faces.of(site.position, nearest);
+            near.extend(faces.across(site.position, nearest));
+            for face in near.into_iter().filter(|face| !is_round(face.point)) {
                 list.push(node(face.point, Feature::Face(face.normal), Round::Point, spacing));
             }
         }

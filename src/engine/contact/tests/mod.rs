@@ -15,6 +15,7 @@ mod rigid;
 mod rolling;
 mod skin_energy;
 mod skins;
+mod spinning;
 mod walls;
 
 use glam::DVec3;
