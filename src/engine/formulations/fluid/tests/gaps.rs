@@ -178,3 +178,21 @@ fn a_gap_that_opens_loses_its_pressure() {
         sim.warnings()
     );
 }
+
+/// Water in a container of four layers that stands on a dry floor: there is no fluid in the gap below it.
+#[test]
+fn pressure_does_not_pass_through_a_container_into_a_dry_gap() {
+    let mut sim = simulation(&format!(
+        r#"(dimension: Two, gravity: (0.0, -{GRAVITY}),
+            materials: {{"water": Fluid(density: 1000.0, sound_speed: 25.0), "wood": NeoHookean(density: 500.0, young: 1.0e7, poisson: 0.3)}},
+            bodies: [
+                (name: "water", material: "water", spacing: 0.01, formulation: Fluid, shape: Box(min: (0, 0), max: (0.4, 0.2))),
+                (name: "container", material: "wood", spacing: 0.01, formulation: Rigid(),
+                 shape: Polygon(points: [(-0.04, -0.04), (0.44, -0.04), (0.44, 0.3), (0.4, 0.3), (0.4, 0), (0, 0), (0, 0.3), (-0.04, 0.3)])),
+                (name: "floor", material: "wood", spacing: 0.01, formulation: Rigid(), shape: Box(min: (-0.2, -0.1), max: (0.6, -0.04))),
+            ],
+            conditions: [Fix(on: Select(body: "floor")), Fix(on: Select(body: "container"))], time: (end: 0.1))"#
+    ));
+    let (on_container, weight) = (force(&mut sim, 1), 1000.0 * GRAVITY * 0.4 * 0.2);
+    assert!((on_container + weight * DVec3::Y).length() < 0.02 * weight, "{on_container} and {weight}");
+}

@@ -2,7 +2,7 @@
 //!
 //! Where no particle of the fluid fits between a body and a wall, the fluid has no pressure there, and its
 //! force on the rest of the body presses the two together. A heavy body rests on the wall in any case; one
-//! that is lighter than the fluid should rise.
+//! that is lighter than the fluid should rise. A container that stands in the dry with its fluid inside does not.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -68,7 +68,7 @@ impl HeldDown {
             let Some(down) = is_light.then(|| force_on(cloud, body.id).dot(gravity.normalize())) else {
                 continue;
             };
-            let held = is_still && down > 0.0;
+            let held = is_still && down > 0.0 && is_wet_below(cloud, body.id, gravity.normalize(), spacing);
             let frames = if held { before.map_or(0, |seen| seen.frames) + 1 } else { 0 };
             self.seen.retain(|seen| seen.body != number);
             self.seen.push(SeenFrames { body: number, place: body.state.center, frames });
@@ -84,6 +84,20 @@ impl HeldDown {
         }
         Ok(())
     }
+}
+
+/// Whether fluid beside a body reaches as far down as the body itself, to a spacing, m.
+fn is_wet_below(cloud: &FlowCloud, body: BodyId, down: DVec3, spacing: f64) -> bool {
+    let rows = cloud.groups.iter().filter(|group| group.body == body).flat_map(|group| group.cloud.clone());
+    let (mut lowest, mut lowest_fluid) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
+    for row in rows {
+        let own = cloud.records[row].position();
+        lowest = own.dot(down).max(lowest);
+        let way = |&j: &u32| cloud.offset(own, cloud.records[j as usize].position());
+        let near = cloud.near_row(row).iter().map(way).filter(|x| x.length() < cloud.kernel.support);
+        lowest_fluid = near.fold(lowest_fluid, |depth, x| depth.max((own + x).dot(down)));
+    }
+    lowest_fluid > lowest - spacing
 }
 
 /// Force of the fluids on a body, N.

@@ -8,6 +8,9 @@
 //! A gap that opens has to be filled from where the fluid is: its pressure falls by the head of that flow.
 //! Without this fall, an impact of the fluid beside a body would lift the body with a pressure that no inflow
 //! supports.
+//!
+//! A particle that has its fluid on the other side than its gap, as one in the bottom of a container that stands
+//! on a floor, has no fluid in that gap.
 
 use glam::DVec3;
 
@@ -18,15 +21,33 @@ use crate::formulations::fluid::cloud::FlowCloud;
 const MIN_SHARE: f64 = 1e-10;
 /// Closed share below which a dry gap is at its end.
 const OPEN: f64 = 0.5;
+/// Cosine of the angle between the ways to the fluid and out of a gap above which the fluid is outside of it.
+const BEHIND: f64 = 0.5;
 
-/// The fluid at a particle: pressure, Pa, and its gradient at rest, Pa/m; its density, kg/m3, and the way to
-/// where it is, m.
+/// The fluid at a particle: pressure, Pa, and its gradient at rest, Pa/m; its density, kg/m3, and the length
+/// of the way to where it is, m.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct GapRemainder {
     pub pressure: f64,
     pub slope: DVec3,
     density: f64,
     way: f64,
+}
+
+/// The way to the fluid in the support of a boundary particle, m; zero where there is none.
+fn way_to_fluid(cloud: &FlowCloud, row: usize) -> DVec3 {
+    let near = cloud.near_row(row).iter().filter_map(|&j| cloud.gap_pair(row, j));
+    let (mut total, mut place) = (0.0, DVec3::ZERO);
+    for pair in near {
+        total += pair.value;
+        place += pair.value * pair.x;
+    }
+    if total > MIN_SHARE { place / total } else { DVec3::ZERO }
+}
+
+/// Whether fluid that is that way is not in a gap out of which this direction leads.
+fn is_outside(way: DVec3, out: DVec3) -> bool {
+    way.dot(out) > BEHIND * way.length()
 }
 
 impl GapRemainder {
@@ -37,19 +58,18 @@ impl GapRemainder {
 
     /// Beside a boundary particle, if fluid is in its support.
     pub fn of_wet(cloud: &FlowCloud, gravity: DVec3, row: u32) -> Option<Self> {
-        let (mut total, mut mass, mut slope, mut place) = (0.0, 0.0, DVec3::ZERO, DVec3::ZERO);
+        let (mut total, mut mass, mut slope) = (0.0, 0.0, DVec3::ZERO);
         let near = cloud.near_row(row as usize);
         for pair in near.iter().filter_map(|&j| cloud.gap_pair(row as usize, j)) {
             let density = cloud.groups.iter().find(|group| group.cloud.contains(&pair.row));
             let density = density.and_then(|group| group.fluid()).map_or(0.0, |state| state.density);
             total += pair.value;
             mass += pair.value * density;
-            place += pair.value * pair.x;
             slope += pair.value * density * (gravity + cloud.load(pair.row));
         }
         let pressure = cloud.records[row as usize].pressure();
-        let of_mean =
-            || Self { pressure, slope: slope / total, density: mass / total, way: place.length() / total };
+        let way = || way_to_fluid(cloud, row as usize).length();
+        let of_mean = || Self { pressure, slope: slope / total, density: mass / total, way: way() };
         (total > MIN_SHARE).then(of_mean)
     }
 }
@@ -77,6 +97,16 @@ pub struct BoundaryMotion<'a> {
 }
 
 impl Gap {
+    /// Leaves out fluid that is on the other side of its body than the gap, and where no gap is in the support.
+    pub fn look_into(&mut self, cloud: &FlowCloud) {
+        let toward = self.around.toward();
+        let is_inside = || {
+            let way = way_to_fluid(cloud, self.particle[0] as usize);
+            toward != DVec3::ZERO && !is_outside(way, -toward)
+        };
+        self.fluid = self.fluid.filter(|_| is_inside());
+    }
+
     /// The fluid there with the pressure that is left, and nothing where it is not known.
     pub fn filled(&self) -> Option<GapRemainder> {
         let left = |fluid: GapRemainder| (fluid.pressure - self.fall).max(0.0);
@@ -109,6 +139,8 @@ pub struct Fill {
     found: Vec<(usize, GapRemainder)>,
     /// Sums of weights and of pressures with them at particles on the other side of gaps.
     beyond: Vec<[f64; 2]>,
+    /// The ways to the fluid, m, from those of them that have it in their support.
+    ways: Vec<DVec3>,
 }
 
 impl Fill {
@@ -165,7 +197,15 @@ impl Fill {
     fn go_beyond(&mut self, cloud: &FlowCloud, gaps: &[Gap]) {
         self.beyond.clear();
         self.beyond.resize(cloud.records.len() - cloud.fluid, [0.0; 2]);
+        self.ways.clear();
+        self.ways.resize(cloud.records.len() - cloud.fluid, DVec3::NAN);
         for gap in gaps {
+            for pair in cloud.across_gap(gap.particle) {
+                let way = &mut self.ways[pair.row - cloud.fluid];
+                if way.is_nan() {
+                    *way = way_to_fluid(cloud, pair.row);
+                }
+            }
             let Some(fluid) = gap.filled() else { continue };
             for pair in cloud.across_gap(gap.particle) {
                 let sum = &mut self.beyond[pair.row - cloud.fluid];
@@ -175,12 +215,13 @@ impl Fill {
         }
     }
 
-    /// Pressure of a particle on the other side of a gap, Pa: that of a wall if fluid is in its support, less
-    /// that `fall`, Pa.
-    pub fn beyond(&self, cloud: &FlowCloud, row: usize, fall: f64) -> Option<f64> {
-        if cloud.is_wet(row) {
+    /// Pressure of a particle on the other side of a gap, Pa: that of a wall if fluid of the gap is in its
+    /// support, less its fall.
+    pub fn beyond(&self, cloud: &FlowCloud, row: usize, gap: &Gap) -> Option<f64> {
+        let way = self.ways[row - cloud.fluid];
+        if way != DVec3::ZERO && !is_outside(way, gap.around.toward()) {
             let pressure = cloud.records[row].pressure();
-            return Some(if fall > 0.0 { (pressure - fall).max(0.0) } else { pressure });
+            return Some(if gap.fall > 0.0 { (pressure - gap.fall).max(0.0) } else { pressure });
         }
         let [total, pressure] = self.beyond[row - cloud.fluid];
         (total > MIN_SHARE).then(|| pressure / total)

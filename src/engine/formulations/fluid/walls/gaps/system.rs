@@ -54,6 +54,7 @@ impl GapPressure {
             for gap in gaps {
                 gap.around = Surrounding::of(cloud, gap.particle);
                 gap.closed = gap.around.closed(surface);
+                gap.look_into(cloud);
             }
         });
         let motion = BoundaryMotion { velocities, spacing: *spacing };
@@ -81,7 +82,7 @@ impl GapPressure {
             across.clear();
             across.extend(cloud.across_gap(gap.particle));
             let of_pair = |pair: &GapPair| {
-                let there = fill.beyond(cloud, pair.row, gap.fall).unwrap_or(pressure);
+                let there = fill.beyond(cloud, pair.row, gap).unwrap_or(pressure);
                 (pressure + there) * pair.weight * pair.x
             };
             let mut force = -across.iter().map(of_pair).sum::<DVec3>();
