@@ -2,7 +2,8 @@
 //!
 //! Where no particle of the fluid fits between a body and a wall, the fluid has no pressure there, and its
 //! force on the rest of the body presses the two together. A heavy body rests on the wall in any case; one
-//! that is lighter than the fluid should rise. A container that stands in the dry with its fluid inside does not.
+//! that is lighter than the fluid should rise. A container that stands in the dry with its fluid inside does
+//! not.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};

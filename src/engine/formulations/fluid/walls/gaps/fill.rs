@@ -9,8 +9,8 @@
 //! Without this fall, an impact of the fluid beside a body would lift the body with a pressure that no inflow
 //! supports.
 //!
-//! A particle that has its fluid on the other side than its gap, as one in the bottom of a container that stands
-//! on a floor, has no fluid in that gap.
+//! A particle that has its fluid on the other side than its gap, as one in the bottom of a container that
+//! stands on a floor, has no fluid in that gap.
 
 use glam::DVec3;
 
@@ -97,7 +97,8 @@ pub struct BoundaryMotion<'a> {
 }
 
 impl Gap {
-    /// Leaves out fluid that is on the other side of its body than the gap, and where no gap is in the support.
+    /// Leaves out fluid that is on the other side of its body than the gap, and where no gap is in the
+    /// support.
     pub fn look_into(&mut self, cloud: &FlowCloud) {
         let toward = self.around.toward();
         let is_inside = || {
