@@ -15,7 +15,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::bond_sum::BondSum;
+use super::bond_sum::{BondSum, SumOverBonds};
 use super::bonds::Bonds;
 use super::cracks::Cracks;
 use super::frame::{AffineFrame, bodies_of, frame_of};

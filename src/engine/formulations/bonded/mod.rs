@@ -26,6 +26,7 @@ mod support;
 
 pub(super) use balance::{HeldBody, balanced_shares};
 pub(super) use body_set_up::{BodySetUp, held_of};
+pub(super) use bond_sum::SumOverBonds;
 pub(super) use bonds::BodyBonds;
 pub use bonds::{BondError, Bonds};
 pub(super) use cracks::{CrackEdge, Cracks, EdgeRows, FailureState};

@@ -24,7 +24,7 @@ use glam::{DMat3, DVec3};
 
 use super::columns::UpdatedReference;
 use super::phase::UpdatedRows;
-use crate::formulations::bonded::Bonds;
+use crate::formulations::bonded::{Bonds, SumOverBonds};
 use crate::parallel::{FourLanes, Lanes4, PlaneOrSpace, for_each_block, run_hot_in};
 use crate::world::{Damage, DeformationGradient};
 
@@ -36,9 +36,6 @@ const SHARE: f64 = 0.75;
 const TIMES: usize = 3;
 /// Largest distance of a reference place from its particle, over the smoothing length.
 const FARTHEST: f64 = 0.25;
-/// Prefetch distance in bonds.
-const AHEAD: usize = 32;
-
 /// Input of the smoothing of the reference positions of a body.
 #[derive(Clone, Copy)]
 pub(super) struct ReferenceSmoothing<'a> {
@@ -203,8 +200,7 @@ impl PlaneOrSpace for DisplacementSums<'_> {
     }
 }
 
-/// Sums over the neighbours of a particle, weighted with V_j w_ij. There are two of them in the loop, for
-/// every other bond, so that additions need not wait for each other.
+/// Sums over the neighbours of a particle, weighted with V_j w_ij.
 struct ExpectedSum<const D: usize> {
     columns: [Lanes4; D],
     place: Lanes4,
@@ -212,36 +208,9 @@ struct ExpectedSum<const D: usize> {
     total: f64,
 }
 
-impl<const D: usize> ExpectedSum<D> {
+impl<const D: usize> SumOverBonds for ExpectedSum<D> {
+    type Record = Expected;
     const ZERO: Self = Self { columns: [Lanes4::ZERO; D], place: Lanes4::ZERO, total: 0.0 };
-
-    /// The sums over the bonds of row `i`.
-    #[inline(always)]
-    fn over<A: FourLanes>(a: A, bonds: &Bonds, held: &[Expected], i: usize) -> Self {
-        let row = bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize;
-        let ahead = &bonds.neighbors[(row.start + AHEAD).min(bonds.neighbors.len())..];
-        let (mut even, mut odd) = (Self::ZERO, Self::ZERO);
-        let (pairs, last) = bonds.neighbors[row.clone()].as_chunks::<2>();
-        let (weights, last_weight) = bonds.weights[row].as_chunks::<2>();
-        for n in 0..pairs.len() {
-            let (j, weight) = (pairs[n], weights[n]);
-            if 2 * n + 1 < ahead.len() {
-                a.prefetch(held, ahead[2 * n] as usize);
-                a.prefetch(held, ahead[2 * n + 1] as usize);
-            }
-            even.add(a, &held[j[0] as usize], weight[0]);
-            odd.add(a, &held[j[1] as usize], weight[1]);
-        }
-        if let ([j], [weight]) = (last, last_weight) {
-            even.add(a, &held[*j as usize], *weight);
-        }
-        for axis in 0..D {
-            even.columns[axis] = a.add(even.columns[axis], odd.columns[axis]);
-        }
-        even.place = a.add(even.place, odd.place);
-        even.total += odd.total;
-        even
-    }
 
     #[inline(always)]
     fn add<A: FourLanes>(&mut self, a: A, other: &Expected, weight: f32) {
@@ -251,6 +220,16 @@ impl<const D: usize> ExpectedSum<D> {
         }
         self.place = a.scale_add(weight, other.place, self.place);
         self.total += weight;
+    }
+
+    #[inline(always)]
+    fn combined<A: FourLanes>(mut self, a: A, other: &Self) -> Self {
+        for axis in 0..D {
+            self.columns[axis] = a.add(self.columns[axis], other.columns[axis]);
+        }
+        self.place = a.add(self.place, other.place);
+        self.total += other.total;
+        self
     }
 }
 

@@ -28,7 +28,7 @@ use std::ops::Range;
 
 use glam::{DMat3, DVec3};
 
-use super::super::bond_sum::BondSum;
+use super::super::bond_sum::{BondSum, SumOverBonds};
 use super::super::bonds::Bonds;
 use super::super::displacement_moment::DisplacementMoment;
 use super::super::frame::{AffineFrame, frame_of};
