@@ -4,7 +4,7 @@ use anyhow::{Context, Result};
 use meshless_engine::plugin::Registry;
 use meshless_engine::simulation::Simulation;
 use meshless_engine::world::{
-    BodyId, Damage, PlasticStrain, Position, ReferencePosition, ReferenceVolume, Temperature,
+    BodyId, Damage, PlasticStrain, Position, ReferencePosition, ReferenceVolume, Removed, Temperature,
 };
 
 use crate::case::Case;
@@ -26,8 +26,9 @@ const CUT: f64 = 2.0e-4;
 const TOP: f64 = 4.0e-4;
 /// Friction.
 const FRICTION: f64 = 0.2;
-/// Interval over which forces are averaged, s: the chip has formed, and no crack has run through it.
-const PRESSED: [f64; 2] = [1.5e-5, 3.0e-5];
+/// Interval over which forces are averaged, s: the chip has formed, and no crack has run through it at any of
+/// the resolutions.
+const PRESSED: [f64; 2] = [6.0e-6, 1.8e-5];
 /// Time from which the chip is measured, s: it is two depths of cut high.
 const CHIP_FROM: f64 = 4.0e-5;
 /// Heights above the free surface between which the chip is measured, in depths of cut.
@@ -140,9 +141,11 @@ fn shear_strength(simulation: &Simulation, workpiece: BodyId) -> Result<f64> {
 fn chip_thickness(simulation: &Simulation, workpiece: BodyId) -> Result<f64> {
     let (view, rows) = simulation.world().body_view(workpiece);
     let (reference, position) = (view.read::<ReferencePosition>()?, view.read::<Position>()?);
-    let volume = view.read::<ReferenceVolume>()?;
+    let (volume, removed) = (view.read::<ReferenceVolume>()?, view.read::<Removed>()?);
     let [low, high] = CHIP.map(|height| TOP + height * DEPTH);
-    let is_chip = |k: &usize| reference[*k].0.y > CUT && (low..high).contains(&position[*k].0.y);
+    let is_chip = |k: &usize| {
+        removed[*k] == Removed::NO && reference[*k].0.y > CUT && (low..high).contains(&position[*k].0.y)
+    };
     Ok(rows.filter(is_chip).map(|k| volume[k].0).sum::<f64>() / (high - low))
 }
 
