@@ -117,6 +117,39 @@ fn a_body_that_has_no_pressure_in_a_gap_is_told_of() {
     assert!(!told(block, "Rigid"));
 }
 
+/// No fluid is missing below a container that stands in the dry, but below one that stands in water it is.
+#[test]
+fn a_container_in_the_dry_has_no_fluid_below_it() {
+    let told = |formulation: &str, layers: f64, outside: bool| {
+        let (t, e) = (0.01 * layers, 0.16 + 0.01 * layers);
+        let shape = format!(
+            "Polygon(points: [(-{t}, 0), ({e}, 0), ({e}, 0.12), (0.16, 0.12), (0.16, {t}), (0, {t}), (0, 0.12), (-{t}, 0.12)])"
+        );
+        let inside = format!("Box(min: (0, {t}), max: (0.16, 0.1))");
+        let around = format!(
+            "Difference(Box(min: (-0.16, 0), max: (0.32, 0.06)), Box(min: (-{t}, 0), max: ({e}, 1)))"
+        );
+        let water = if outside { format!("Union([{inside}, {around}])") } else { inside };
+        let mut sim = simulation(&format!(
+            r#"(dimension: Two, gravity: (0.0, -{GRAVITY}),
+                materials: {{"water": Fluid(density: 1000.0, sound_speed: 20.0), "stuff": NeoHookean(density: 1200.0, young: 1.0e7, poisson: 0.3)}},
+                bodies: [
+                    (name: "water", material: "water", spacing: 0.01, formulation: Fluid, shape: {water}),
+                    (name: "container", material: "stuff", spacing: 0.01, formulation: {formulation}, shape: {shape}),
+                    (name: "tank", material: "wall", spacing: 0.01, formulation: Wall(),
+                     shape: Difference(Box(min: (-0.2, -0.04), max: (0.36, 0.2)), Box(min: (-0.16, 0), max: (0.32, 1)))),
+                ],
+                contacts: [Contact(between: ("container", "tank"), restitution: 0.1)], time: (end: 0.03))"#
+        ));
+        sim.run(|_| true).expect("a run");
+        sim.warnings().iter().any(|text| text.contains("`container` lies on another body or a wall at"))
+    };
+    for (formulation, layers) in [("Rigid()", 2.0), ("TotalLagrangian", 2.0), ("TotalLagrangian", 4.0)] {
+        assert!(!told(formulation, layers, false), "{formulation}, {layers} layers, in the dry");
+        assert!(told(formulation, layers, true), "{formulation}, {layers} layers, in water");
+    }
+}
+
 /// A dam on the floor with water on one side: the pressure below it is between that of the water and none.
 #[test]
 fn the_pressure_below_a_dam_ends_where_it_is_dry() {

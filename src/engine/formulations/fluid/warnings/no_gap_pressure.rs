@@ -1,4 +1,6 @@
 //! Deformable and thin bodies that lie on other bodies or walls in a fluid: it has no pressure in the gap.
+//!
+//! Under a container that stands in the dry with its fluid inside there is no fluid to have one.
 
 use glam::DVec3;
 
@@ -8,12 +10,16 @@ use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch};
 use crate::notation::place;
 use crate::rigid::RigidBodies;
 use crate::schedule::{Step, StepError};
-use crate::world::Mobility;
+use crate::world::{BodyId, Mobility};
 
 /// Distance of two particles that touch, over the mean of their spacings.
 const TOUCH: f64 = 1.25;
 /// Width of a dry part in contact, over the spacing of the fluid, from which on a body is reported.
 const MIN_WIDTH: f64 = 3.0;
+/// Distance, over the spacing of the fluid, by which the fluid beside a body may reach less far towards what
+/// the body touches than the body itself: half a spacing where its lattice is shifted against that of the
+/// body; in a container of two layers, half as wide as those of the fluid, it is one and a quarter.
+const REACH: f64 = 0.75;
 
 /// Warns, once, of the first body that lies on something and is wet elsewhere; `spacing` is that of the
 /// fluid, m.
@@ -49,13 +55,20 @@ pub fn look(
         let place_of = |row: usize| cloud.records[row].position();
         let targets: Vec<DVec3> = free.iter().map(|&k| place_of(group.cloud.start + k)).collect();
         let own = width(cloud, &cloud.records[group.cloud.start]);
-        let touching = touching(cloud, group, &targets, own, spacing).map_err(|error| StepError::System {
-            system: "fluid_watch".to_owned(),
-            message: error.to_string(),
+        let mut touching = touching(cloud, group, &targets, own, spacing).map_err(|error| {
+            StepError::System { system: "fluid_watch".to_owned(), message: error.to_string() }
         })?;
-        let Some(&first) =
-            touching.first().filter(|_| touching.len() as f64 >= (MIN_WIDTH * spacing / own).powi(across))
-        else {
+        let is_wide =
+            |found: &[(usize, DVec3)]| found.len() as f64 >= (MIN_WIDTH * spacing / own).powi(across);
+        if !is_wide(&touching) {
+            continue;
+        }
+        let beside = fluid_beside(cloud, group.body);
+        touching.retain(|&(k, way)| {
+            let reach = |x: &DVec3| cloud.offset(targets[k], *x).dot(way) > -REACH * spacing;
+            beside.iter().any(reach)
+        });
+        let Some(&(first, _)) = touching.first().filter(|_| is_wide(&touching)) else {
             continue;
         };
         step.warnings.push(format!(
@@ -75,15 +88,24 @@ fn width(cloud: &FlowCloud, record: &FlowParticle) -> f64 {
     record.volume().powf(if cloud.plane { 0.5 } else { 1.0 / 3.0 })
 }
 
-/// Numbers of the places that have a particle of another boundary beside them; particles there have the width
-/// `own`, m, and none is wider than `spacing`, m.
+/// Places of the fluid in the support of the particles of a body, m.
+fn fluid_beside(cloud: &FlowCloud, body: BodyId) -> Vec<DVec3> {
+    let rows = cloud.groups.iter().filter(|group| group.body == body).flat_map(|group| group.cloud.clone());
+    let mut beside: Vec<u32> = rows.flat_map(|row| cloud.near_row(row).iter().copied()).collect();
+    beside.sort_unstable();
+    beside.dedup();
+    beside.iter().map(|&j| cloud.records[j as usize].position()).collect()
+}
+
+/// Numbers of the places that have a particle of another boundary beside them, with the direction to the
+/// nearest one; particles there have the width `own`, m, and none is wider than `spacing`, m.
 fn touching(
     cloud: &FlowCloud,
     group: &Group,
     targets: &[DVec3],
     own: f64,
     spacing: f64,
-) -> Result<Vec<usize>, NeighborError> {
+) -> Result<Vec<(usize, DVec3)>, NeighborError> {
     let others = cloud.groups.iter().filter(|other| other.fluid().is_none() && other.body != group.body);
     let others = others.flat_map(|other| cloud.records[other.cloud.clone()].iter());
     let others: Vec<&FlowParticle> = others.filter(|record| record.volume() > 0.0).collect();
@@ -93,7 +115,12 @@ fn touching(
     NeighborSearch::default().between(from, to, 0.0, cloud.pairs.periodic(), &mut list)?;
     let touches = |k: usize, j: u32| {
         let reach = 0.5 * TOUCH * (own + width(cloud, others[j as usize]));
-        cloud.offset(targets[k], sources[j as usize]).length() < reach
+        let way = cloud.offset(targets[k], sources[j as usize]);
+        (way.length() < reach).then_some(way)
     };
-    Ok((0..targets.len()).filter(|&k| list.row(k).iter().any(|&j| touches(k, j))).collect())
+    let nearest = |k: usize| {
+        let ways = list.row(k).iter().filter_map(|&j| touches(k, j));
+        ways.min_by(|a, b| a.length().total_cmp(&b.length())).map(|way| (k, way.normalize_or_zero()))
+    };
+    Ok((0..targets.len()).filter_map(nearest).collect())
 }
