@@ -68,7 +68,8 @@ pub struct Line {
 /// Reduction over a selection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Reduction {
-    /// The mean, weighted by mass: of a rigid body the motion of its mass centre. A `surface` is weighted by
+    /// The mean, weighted by mass: of a rigid body the motion of its mass centre. Walls have no mass: a mean
+    /// over them alone is weighted by volume, and one over bodies leaves them out. A `surface` is weighted by
     /// area.
     Mean,
     /// The sum over the particles.

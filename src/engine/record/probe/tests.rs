@@ -55,6 +55,21 @@ fn the_mean_position_of_a_rigid_body_is_its_mass_centre() {
     near(&found, &[("x", 0.3), ("y", 0.2)]);
 }
 
+/// Walls have no mass.
+#[test]
+fn a_wall_has_the_mean_of_its_places() {
+    let of = |quantity: &str| {
+        first_of(format!(
+            r#"(dimension: Two, materials: {{"m": Fluid(density: 1000, sound_speed: 10)}},
+                bodies: [(name: "f", material: "m", shape: Box(min: (0, 1), max: (0.4, 1.2)), spacing: 0.1, formulation: Fluid),
+                    (name: "w", material: "wall", shape: Box(min: (0, 0), max: (0.8, 0.4)), spacing: 0.1, formulation: Wall(slip: Free), velocity: (0.5, 0))],
+                probes: [(name: "p", on: Select(body: "w"), quantity: {quantity})], time: (end: 1e-6, step: Fixed(1e-6)))"#
+        ))
+    };
+    near(&of("Position"), &[("x", 0.4), ("y", 0.2)]);
+    near(&of("Velocity"), &[("x", 0.5), ("y", 0.0)]);
+}
+
 #[test]
 fn a_point_of_a_body_has_the_linear_field_exactly_at_its_corners_too() {
     let at = |x: f64, y: f64| [("x", 0.01 + 0.1 * x + 0.2 * y), ("y", -0.02 + 0.05 * x - 0.1 * y)];
