@@ -53,7 +53,7 @@ impl Chatter {
         // The points of both on the other are two contacts.
         if !step.warnings.iter().any(|warning| warning.starts_with(&begin)) {
             step.warnings.push(format!(
-                "{begin} until {} points that slide have stuck again {TIMES} times, because friction drives vibrations that nothing damps, and it falls short of its coefficient; `artificial_viscosity()` in the plugins of deformable bodies damps them, and so does a restitution below 1 between rigid ones",
+                "{begin} until {} points that slide have stuck again {TIMES} times, because friction drives vibrations that nothing damps, and it falls short of its coefficient; `artificial_viscosity()` in the plugins of deformable bodies damps them",
                 quantity(step.clock.end(), "s")
             ));
         }
