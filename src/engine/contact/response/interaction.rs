@@ -56,11 +56,12 @@ pub(in crate::contact) struct Response {
     pub history: History,
 }
 
-/// Dissipation of a contact in a step, J.
+/// Dissipation of contacts in a step, J, and which of them slide.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::contact) struct Losses {
     pub damping: f64,
     pub friction: f64,
+    /// The normal forces of those that slide.
     pub sliding: Sliding,
 }
 
@@ -271,7 +272,7 @@ impl Losses {
         self.friction -= history.spring.dot(half);
     }
 
-    /// Adds that the tangential spring keeps a part of it.
+    /// Adds that the tangential spring keeps a part of it, and whether the contact slides.
     pub fn keep(&mut self, share: f64, before: &History, now: &History) {
         self.sliding.take_in(share, before, now);
         self.friction -= share * (now.energy() - before.energy());

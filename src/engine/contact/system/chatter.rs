@@ -48,10 +48,12 @@ impl Chatter {
             return;
         }
         self.is_told = true;
-        let [first, second] = bodies.map(|body| step.world.body(body).name.clone());
-        let begin = format!("bodies `{first}` and `{second}` chatter:");
-        // The points of both on the other are two contacts.
-        if !step.warnings.iter().any(|warning| warning.starts_with(&begin)) {
+        let [first, second] = bodies.map(|body| &step.world.body(body).name);
+        // The points of each of two rigid bodies on the other are two contacts.
+        let [begin, turned] =
+            [(first, second), (second, first)].map(|(a, b)| format!("bodies `{a}` and `{b}` chatter:"));
+        let is_of_both = |told: &String| told.starts_with(&begin) || told.starts_with(&turned);
+        if !step.warnings.iter().any(is_of_both) {
             step.warnings.push(format!(
                 "{begin} until {} points that slide have stuck again {TIMES} times, because friction drives vibrations that nothing damps, and it falls short of its coefficient; `artificial_viscosity()` in the plugins of deformable bodies damps them",
                 quantity(step.clock.end(), "s")

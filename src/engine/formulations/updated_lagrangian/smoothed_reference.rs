@@ -36,6 +36,7 @@ const SHARE: f64 = 0.75;
 const TIMES: usize = 3;
 /// Largest distance of a reference place from its particle, over the smoothing length.
 const FARTHEST: f64 = 0.25;
+
 /// Input of the smoothing of the reference positions of a body.
 #[derive(Clone, Copy)]
 pub(super) struct ReferenceSmoothing<'a> {

@@ -25,7 +25,7 @@ const OPEN: f64 = 0.5;
 const BEHIND: f64 = 0.5;
 
 /// The fluid at a particle: pressure, Pa, and its gradient at rest, Pa/m; its density, kg/m3, and the length
-/// of the way to where it is, m.
+/// of the way to where it is, m, zero before the gap has been looked into.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct GapRemainder {
     pub pressure: f64,
@@ -68,8 +68,7 @@ impl GapRemainder {
             slope += pair.value * density * (gravity + cloud.load(pair.row));
         }
         let pressure = cloud.records[row as usize].pressure();
-        let way = || way_to_fluid(cloud, row as usize).length();
-        let of_mean = || Self { pressure, slope: slope / total, density: mass / total, way: way() };
+        let of_mean = || Self { pressure, slope: slope / total, density: mass / total, way: 0.0 };
         (total > MIN_SHARE).then(of_mean)
     }
 }
@@ -97,15 +96,15 @@ pub struct BoundaryMotion<'a> {
 }
 
 impl Gap {
-    /// Leaves out fluid that is on the other side of its body than the gap, and where no gap is in the
-    /// support.
+    /// Finds the way to the fluid, and leaves out fluid that is on the other side of its body than the gap,
+    /// and where no gap is in the support.
     pub fn look_into(&mut self, cloud: &FlowCloud) {
-        let toward = self.around.toward();
-        let is_inside = || {
-            let way = way_to_fluid(cloud, self.particle[0] as usize);
-            toward != DVec3::ZERO && !is_outside(way, -toward)
-        };
-        self.fluid = self.fluid.filter(|_| is_inside());
+        let Some(fluid) = &mut self.fluid else { return };
+        let (toward, way) = (self.around.toward(), way_to_fluid(cloud, self.particle[0] as usize));
+        fluid.way = way.length();
+        if toward == DVec3::ZERO || is_outside(way, -toward) {
+            self.fluid = None;
+        }
     }
 
     /// The fluid there with the pressure that is left, and nothing where it is not known.
