@@ -63,8 +63,9 @@ pub(super) fn apply(
     let forces = vec![Vec::new(); parts.len()];
     let law: Arc<dyn LoadLaw> = Arc::new(law);
     flow_load::add(label, &law, &parts, sim);
-    let turns = parts.iter().any(|part| sim.body(part.body).kind == BodyKind::Rigid);
-    let load = Load { label, law, parts, forces, next: Vec::new() };
+    let on_rigid: Vec<bool> = parts.iter().map(|part| sim.body(part.body).kind == BodyKind::Rigid).collect();
+    let turns = on_rigid.contains(&true);
+    let load = Load { label, law, parts, on_rigid, forces, next: Vec::new() };
     let mut system = System::new(Stage::External, label, load).on_phases(phases).by_body();
     if turns {
         system = system.touches_packed(RIGID_BODIES, Mode::Adds);
@@ -91,6 +92,8 @@ struct Load {
     label: &'static str,
     law: Arc<dyn LoadLaw>,
     parts: Vec<Part>,
+    /// Whether the body of each part is rigid.
+    on_rigid: Vec<bool>,
     /// Forces at the end of the last step, in the order of rows; empty before the first.
     forces: Vec<Vec<DVec3>>,
     next: Vec<DVec3>,
@@ -131,9 +134,8 @@ impl Run for Load {
                 }
                 power
             });
-            let arms = self.law.arms(k);
-            if !arms.is_empty() {
-                power += push_beside(part.body, arms, [last, next], step);
+            if self.on_rigid[k] {
+                power = push_beside(part, self.law.arms(k), [last, next], step);
             }
             step.ledger.add(account, part.body, power * step.clock.dt);
             if changes {

@@ -2,8 +2,10 @@
 
 use glam::DVec3;
 
+use super::part::Part;
+use crate::parallel::{BlockSum, sum_over_blocks};
 use crate::plugin::{BodyKind, BodyPlan, Selection, SetupError, SimBuilder, selected_facets};
-use crate::rigid::{RigidBodies, Wrench};
+use crate::rigid::{RigidBodies, RigidState, Wrench};
 use crate::scene::{Face, Select};
 use crate::schedule::Step;
 use crate::shapes::Region;
@@ -99,18 +101,47 @@ fn arm(select: &Select, particle: DVec3, body: &BodyPlan, region: &dyn Region) -
 }
 
 /// Adds what forces do beside the particles of a rigid body: their torques about these. `forces` are those at
-/// the ends of the step, N. Returns the power of their mean, W.
-pub(super) fn push_beside(id: BodyId, arms: &[DVec3], [last, next]: [&[DVec3]; 2], step: &Step<'_>) -> f64 {
-    let resources = step.resources;
-    let mut bodies = resources.get_mut::<RigidBodies>();
-    let Some(body) = bodies.iter_mut().find(|body| body.id == id) else { return 0.0 };
-    let (turn, spin) = (body.state.rotation, body.state.angular_velocity);
-    let (mut torque, mut power) = (DVec3::ZERO, 0.0);
-    for ((arm, last), next) in arms.iter().zip(last).zip(next) {
-        let arm = turn * *arm;
-        torque += arm.cross(*next);
-        power += 0.5 * (*last + *next).dot(spin.cross(arm));
+/// the ends of the step, N, on the particles of a part. Returns their power, W: of the first at the places
+/// that the body leaves in this step, of the second at those that it reaches, which is what the two kicks
+/// spend. With the places of one end, it would be off by half the angle of a step.
+pub(super) fn push_beside(part: &Part, arms: &[DVec3], [last, next]: [&[DVec3]; 2], step: &Step<'_>) -> f64 {
+    let mut bodies = step.resources.get_mut::<RigidBodies>();
+    let Some(body) = bodies.iter_mut().find(|body| body.id == part.body && !body.state.gone) else {
+        return 0.0;
+    };
+    let (turn, center) = (body.state.rotation, body.reference_center);
+    let left = body.left;
+    let rows = (&part.points[..], last, next);
+    let sums = sum_over_blocks(rows, &|first, (points, last, next): (&[DVec3], &[DVec3], &[DVec3])| {
+        let mut sums = OnRigid::default();
+        for (k, ((point, last), next)) in points.iter().zip(last).zip(next).enumerate() {
+            let beside = arms.get(first + k).copied().unwrap_or_default();
+            let arm = *point - center + beside;
+            sums.last.push(left.rotation * arm, *last);
+            sums.next.push(turn * arm, *next);
+            sums.beside += (turn * beside).cross(*next);
+        }
+        sums
+    });
+    body.push(&Wrench { force: DVec3::ZERO, torque: sums.beside });
+    let RigidState { velocity, angular_velocity, .. } = body.state;
+    let spent = |sum: Wrench, spin: DVec3| 0.5 * (sum.force.dot(velocity) + sum.torque.dot(spin));
+    spent(sums.last, left.angular_velocity) + spent(sums.next, angular_velocity)
+}
+
+/// Forces of a load on a rigid body, with their torques about its centre, at both ends of a step.
+#[derive(Clone, Copy, Default)]
+struct OnRigid {
+    last: Wrench,
+    next: Wrench,
+    /// Torque at the end of the step that the forces have about their particles, N m.
+    beside: DVec3,
+}
+
+impl BlockSum for OnRigid {
+    fn add(&mut self, next: &Self) {
+        self.last.add(&next.last);
+        self.next.add(&next.next);
+        self.beside += next.beside;
     }
-    body.push(&Wrench { force: DVec3::ZERO, torque });
-    power
 }

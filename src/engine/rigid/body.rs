@@ -52,6 +52,15 @@ impl RigidState {
     }
 }
 
+/// Orientation of a rigid body and its change.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Turning {
+    /// Rotation from the reference configuration.
+    pub rotation: DQuat,
+    /// Angular velocity, 1/s.
+    pub angular_velocity: DVec3,
+}
+
 /// A rigid body.
 pub struct RigidBody {
     /// Index in the scene.
@@ -77,6 +86,8 @@ pub struct RigidBody {
     contact: Wrench,
     /// Stiffness of all contacts of the step, about the centre.
     pub(crate) contact_stiffness: Wrench,
+    /// How it stood and turned before it moved in this step.
+    pub(crate) left: Turning,
     /// What drives have added to the velocity of the centre, m/s2, and to the angular velocity, 1/s2, in the
     /// first half of this step.
     pub(super) gained: [DVec3; 2],
@@ -105,6 +116,7 @@ impl RigidBody {
             state,
             contact,
             contact_stiffness: Wrench::default(),
+            left: Turning { rotation: state.rotation, angular_velocity: state.angular_velocity },
             gained: [DVec3::ZERO; 2],
         }
     }

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::body::{RIGID_BODIES, RigidBodies, RigidBody, RigidState};
+use super::body::{RIGID_BODIES, RigidBodies, RigidBody, RigidState, Turning};
 use super::constraint::RotationConstraint;
 use super::wrench::Wrench;
 use crate::parallel::{BlockSum, sum_over_blocks};
@@ -126,6 +126,7 @@ impl RigidBody {
     fn drift(&mut self, dt: f64) {
         self.state.center += dt * self.state.velocity;
         let state = &mut self.state;
+        self.left = Turning { rotation: state.rotation, angular_velocity: state.angular_velocity };
         state.rotation = match &self.constraint.turning {
             RotationConstraint::Free => self.inertia.turn(state.rotation, state.angular_momentum, dt),
             RotationConstraint::Held => state.rotation,

@@ -151,6 +151,30 @@ fn loads_act_on_the_surface_of_a_rigid_body_however_coarsely_it_is_filled() {
     }
 }
 
+/// A force F that keeps its direction swings a bar about its held centre, as a weight at its end does, and
+/// one on a free bar turns it; the kinetic energy is the work of the force, F times the way of its point.
+#[test]
+fn the_work_of_a_force_is_that_of_the_way_of_its_point_as_the_body_turns() {
+    for (rotation, conditions) in [
+        ("Free", r#"Fix(on: Select()), Force(on: Select(nearest: (0.4, 0.05)), value: (0.0, -10.0))"#),
+        ("About((0, 0, 1))", r#"Fix(on: Select()), Force(on: Select(face: MaxX), value: (0.0, -10.0))"#),
+        ("Free", r#"Traction(on: Select(face: MaxX), value: (0.0, -100.0))"#),
+        ("Free", r#"BodyForce(on: Select(face: MaxX), value: (0.0, "-2 - 0*t"))"#),
+    ] {
+        let text = format!(
+            r#"(dimension: Two, materials: {{"wood": NeoHookean(density: 500.0, young: 1e7, poisson: 0.3)}},
+                bodies: [(name: "bar", material: "wood", shape: Box(min: (0.0, 0.0), max: (0.4, 0.1)), spacing: 0.05, formulation: Rigid(rotation: {rotation}))],
+                conditions: [{conditions}], time: (end: 0.9))"#
+        );
+        let (scene, source) = parse(Source::new("bar.ron", text)).unwrap_or_else(|error| panic!("{error}"));
+        let mut sim = build(&scene, &source, &Registry::standard()).unwrap_or_else(|error| panic!("{error}"));
+        sim.run(|_| true).expect("a run");
+        let turned = 2.0 * sim.resources().get::<RigidBodies>()[0].state.rotation.z.asin().abs();
+        let error = sim.ledger().relative_error();
+        assert!(turned > 0.5 && error.abs() < 5e-4, "{conditions}: turned by {turned}, error {error}");
+    }
+}
+
 #[test]
 fn a_top_without_torque_precesses_as_euler_says() {
     // A disc with a radius of 0.1 m, 0.04 m high: its axis goes round the angular momentum in 2 pi I / L,
