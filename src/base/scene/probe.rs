@@ -107,9 +107,10 @@ pub enum Quantity {
     /// Sum of all forces on the particles of the selection except those of supports \[N\]. Where a condition
     /// holds or drives the selection, it is the force that the body exerts on the condition, its own weight
     /// included: the weight of a body that hangs from its support points down. Of a rigid body it is that on
-    /// the whole body.
+    /// the whole body. Walls and half-spaces have no weight: on them it is that of flows and contacts.
     Force,
-    /// Torque of the same forces about the centre of mass of the selection \[N m\].
+    /// Torque of the same forces about the centre of mass of the selection \[N m\]. A half-space has none: use
+    /// `Moment`.
     Torque,
     /// Moment of the same forces about a fixed point \[N m\].
     Moment {

@@ -143,8 +143,8 @@ fn fill(
     Ok((sites, bounds))
 }
 
-/// The one particle, just behind the surface, that represents an unbounded rigid body: a half-space that is a
-/// tool.
+/// The particles, just behind the surface, that represent an unbounded rigid body: a half-space that is a
+/// tool. They are the corners of a square or a cube, so that forces on them can have any torque.
 fn endless_tool(
     body: &BodyDescription,
     formulation: &str,
@@ -161,8 +161,14 @@ fn endless_tool(
     let surface = body.shape.surface(scene.dimension, folder, "shape").ok()?;
     let middle = |domain: &Domain| 0.5 * (domain.min.0 + domain.max.0);
     let nearest = surface.closest(scene.domain.as_ref().map_or(DVec3::ZERO, middle));
-    let position = nearest.point - 0.5 * body.spacing * nearest.normal;
-    Some(vec![Site { position, volume: body.spacing.powi(scene.dimension.count() as i32) }])
+    let middle = nearest.point - body.spacing * nearest.normal;
+    let axes = scene.dimension.count();
+    let volume = body.spacing.powi(axes as i32);
+    let corner = |k: usize| {
+        let side = |axis: usize| if axis >= axes { 0.0 } else { (k >> axis & 1) as f64 - 0.5 };
+        Site { position: middle + body.spacing * DVec3::new(side(0), side(1), side(2)), volume }
+    };
+    Some((0..1 << axes).map(corner).collect())
 }
 
 fn parse_formulation<'r>(registry: &'r Registry, item: &Item) -> Result<Parsed<'r>, Vec<Problem>> {

@@ -92,8 +92,9 @@ struct Load {
     label: &'static str,
     law: Arc<dyn LoadLaw>,
     parts: Vec<Part>,
-    /// Whether the body of each part is rigid.
-    on_rigid: Vec<bool>,
+    /// Kind of the body of each part. Walls have no mass: a load changes the pressure of the fluid beside
+    /// them, and does not act on themselves.
+    kinds: Vec<BodyKind>,
     /// Forces at the end of the last step, in the order of rows; empty before the first.
     forces: Vec<Vec<DVec3>>,
     next: Vec<DVec3>,
@@ -120,6 +121,7 @@ impl Run for Load {
             let removed = view.read::<Removed>()?;
             let mut force = view.write::<Force>()?;
             let (velocity, removed) = (&velocity[..], &removed[..]);
+            let acts = self.kinds[k] != BodyKind::Boundary;
             let next: &[DVec3] = if changes { &self.next } else { last };
             let rows = (Picked::new(&part.rows, &mut force), &last[..], next);
             type Rows<'a> = (Picked<'a, Force>, &'a [DVec3], &'a [DVec3]);
@@ -127,14 +129,14 @@ impl Run for Load {
                 let mut power = 0.0;
                 for (k, (last, next)) in last.iter().zip(next).enumerate() {
                     let row = loaded.number(k);
-                    if removed[row] == Removed::NO {
+                    if removed[row] == Removed::NO && acts {
                         loaded.row(k).0 += *next;
                         power += 0.5 * (*last + *next).dot(velocity[row].0);
                     }
                 }
                 power
             });
-            if self.on_rigid[k] {
+            if self.kinds[k] == BodyKind::Rigid {
                 power = push_beside(part, self.law.arms(k), [last, next], step);
             }
             step.ledger.add(account, part.body, power * step.clock.dt);

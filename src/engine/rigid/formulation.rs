@@ -228,7 +228,13 @@ impl Rigid {
             let message = format!(
                 "a rigid body that moves freely must have a positive mass, found {mass} kg for `{name}`"
             );
-            let help = "give it a positive `mass`, or prescribe its whole motion by `Fix`, `Velocity` or `Displacement`";
+            let help = "give it a positive `mass`, or leave it out: it follows from density and shape";
+            return Err(SetupError::parameter(place, message, help));
+        }
+        if !has_mass {
+            let message = format!("`mass` must be positive, found {mass} kg for `{name}`");
+            let help =
+                "leave it out: where the whole motion is prescribed, mass matters for the weight alone";
             return Err(SetupError::parameter(place, message, help));
         }
         let is_held = constraint.moves_as_prescribed() && constraint.is_held_from_turning();

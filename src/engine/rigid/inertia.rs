@@ -22,9 +22,10 @@ pub(super) struct MassProperties {
 
 impl MassProperties {
     /// Where the shape has no closed form, its moments are counted; an unbounded one has those of its
-    /// particles.
+    /// particles, with next to no mass: it is a tool, whose weight is in no force that others exert on it.
     pub fn new(body: &BodyPlan, surface: &dyn Surface, dimension: Dimension) -> Self {
-        let density = body.material.density;
+        let share = if surface.bounds().is_bounded() { 1.0 } else { UNBOUNDED };
+        let density = share * body.material.density;
         let volume: f64 = body.sites.iter().map(|site| site.volume).sum();
         let moments = match surface.moments() {
             Some(moments) => moments,
@@ -44,6 +45,9 @@ impl MassProperties {
     }
 }
 
+/// Mass of the particles of an unbounded body, over that of their volume: forces are shared out by mass, so
+/// that it is not zero.
+const UNBOUNDED: f64 = 1e-12;
 /// Distance of the centre of the particles from that of the body, over their radius of gyration, below which
 /// it is round-off.
 const ROUND_OFF: f64 = 1e-9;

@@ -51,9 +51,8 @@ fn mass(simulation: &Simulation, bodies: [BodyId; 2]) -> Result<f64> {
 /// External force on water and box, N: their weight, and the opposite of their force on the tank.
 fn outside(simulation: &Simulation, bodies: [BodyId; 2], tank: BodyId) -> Result<DVec3> {
     let (view, rows) = simulation.world().body_view(tank);
-    let (force, own) = (view.read::<Force>()?, view.read::<Mass>()?);
-    Ok(mass(simulation, bodies)? * GRAVITY
-        - rows.map(|row| force[row].0 - GRAVITY * own[row].0).sum::<DVec3>())
+    let force = view.read::<Force>()?;
+    Ok(mass(simulation, bodies)? * GRAVITY - rows.map(|row| force[row].0).sum::<DVec3>())
 }
 
 fn floating_box(registry: &Registry, across: usize) -> Result<Vec<Check>> {

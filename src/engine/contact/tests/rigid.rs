@@ -360,3 +360,27 @@ fn a_rigid_block_slides_down_a_slope_with_the_acceleration_of_coulomb() {
     let expected = g * (sin - friction * cos) * 0.3;
     assert!((speed / expected - 1.0).abs() < 0.005, "{speed} {expected}");
 }
+
+/// A block of 19.62 N/m rests at x = 5 m on a half-space, which has no weight of its own.
+#[test]
+fn force_and_moment_on_a_half_space_are_those_of_the_contact() {
+    let mut sim = simulation(
+        r#"(dimension: Two, gravity: (0, -9.81),
+            materials: {"stone": NeoHookean(density: 2000, young: 1e7, poisson: 0.3)},
+            bodies: [
+                (name: "block", material: "stone", shape: Box(min: (4.9, 0), max: (5.1, 0.005)), spacing: 0.0025, formulation: Rigid()),
+                (name: "floor", material: "stone", shape: HalfSpace(point: (0, 0), normal: (0, 1)), spacing: 0.05, formulation: Rigid()),
+            ],
+            conditions: [Fix(on: Select(body: "floor"))],
+            contacts: [Contact(between: ("block", "floor"), restitution: 0.1)],
+            time: (end: 0.02))"#,
+    );
+    sim.run(|_| true).unwrap();
+    let (view, rows) = sim.world().body_view(crate::world::BodyId(1));
+    let force = view.read::<crate::world::Force>().unwrap();
+    let place = view.read::<crate::world::Position>().unwrap();
+    let sum: DVec3 = rows.clone().map(|row| force[row].0).sum();
+    let moment: DVec3 = rows.map(|row| place[row].0.cross(force[row].0)).sum();
+    assert!((sum.y + 19.62).abs() < 1e-3, "{sum}");
+    assert!((moment.z + 5.0 * 19.62).abs() < 5e-3, "{moment}");
+}

@@ -1,9 +1,12 @@
 //! Walls in scenes without a fluid, and half-spaces as tools.
 
+use glam::DVec3;
+
 use super::{centre, simulation};
 use crate::assembly::build;
 use crate::plugin::Registry;
 use crate::scene::{Source, parse};
+use crate::world::{BodyId, Force};
 
 /// A block that is thrown onto something below, which does not move.
 fn thrown(tool: &str, conditions: &str) -> String {
@@ -53,4 +56,28 @@ fn a_half_space_that_nothing_holds_is_an_error() {
     let (scene, source) = parse(Source::new("tool.ron", thrown(tool, ""))).unwrap();
     let Err(error) = build(&scene, &source, &Registry::standard()) else { panic!("it has no mass") };
     assert!(error.to_string().contains("rigid body `tool` is unbounded"), "{error}");
+}
+
+/// A block of 19.62 N/m rests on a wall. Neither gravity nor a force per mass acts on the wall itself, which
+/// has no mass; a wall that moves takes up no work of them.
+#[test]
+fn the_force_on_a_wall_is_that_of_what_it_carries() {
+    let mut sim = simulation(
+        r#"(dimension: Two, gravity: (0, -4.81),
+            materials: {"stone": NeoHookean(density: 2000, young: 1e7, poisson: 0.3)},
+            bodies: [
+                (name: "block", material: "stone", shape: Box(min: (0, 0), max: (0.2, 0.005)), spacing: 0.0025, formulation: Rigid()),
+                (name: "floor", material: "stone", shape: Box(min: (-0.1, -0.1), max: (0.3, 0)), spacing: 0.02, formulation: Wall, velocity: (0.2, 0)),
+            ],
+            conditions: [BodyForce(on: Select(), value: (0, "-5 + 0*t"))],
+            contacts: [Contact(between: ("block", "floor"), restitution: 0.1)],
+            time: (end: 0.1))"#,
+    );
+    sim.run(|_| true).unwrap();
+    let (view, rows) = sim.world().body_view(BodyId(1));
+    let sum: DVec3 = view.read::<Force>().unwrap()[rows].iter().map(|force| force.0).sum();
+    assert!((sum.y + 19.62).abs() < 0.02 && sum.x.abs() < 0.02, "{sum}");
+    let accounts = sim.ledger().accounts();
+    let work = accounts.iter().find(|account| account.name == "body_force").map_or(0.0, |a| a.total());
+    assert!(work.abs() < 1e-3, "{work}");
 }

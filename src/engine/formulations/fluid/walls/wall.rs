@@ -8,15 +8,15 @@ use crate::parallel::sum_over_own_blocks;
 use crate::plugin::{BodyKind, Formulation, Offer, SetupError, SimBuilder};
 use crate::scene::Vec3;
 use crate::schedule::{Run, Stage, Step, StepError, System};
-use crate::world::{BodyId, BodySet, ColumnSet, Force, Mass, Mobility, Pressure, Removed, World};
+use crate::world::{BodyId, BodySet, ColumnSet, Force, Mobility, Pressure, World};
 
 crate::column! {
     /// Velocity of a wall at the middle of the step before.
     pub struct PreviousVelocity(glam::DVec3) = "previous_velocity", "v_n-1/2", "m/s";
 }
 
-/// Label of the system that gives walls their weight.
-const WALL_WEIGHT: &str = "wall_weight";
+/// Label of the system with which the sums of forces on walls begin.
+const NO_FORCE: &str = "no_force_on_walls";
 
 /// Wall: boundary of fluids, moved only by conditions and the `velocity` of its body. It needs as many layers
 /// of particles as the support of the fluid extends over, three in two dimensions and default settings.
@@ -69,15 +69,10 @@ impl Formulation for Wall {
     }
 
     fn assemble(bodies: Vec<(BodyId, Self)>, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
-        let gravity = sim.gravity();
         let ids = BodySet::new(bodies.iter().map(|(id, _)| *id));
         let phases = sim.phases_of(&ids);
         sim.add_system(
-            System::new(Stage::Rates, WALL_WEIGHT, WallWeight { walls: ids, gravity })
-                .on_phases(phases)
-                .reads::<Mass>()
-                .reads::<Removed>()
-                .writes::<Force>(),
+            System::new(Stage::Rates, NO_FORCE, NoForce { walls: ids }).on_phases(phases).writes::<Force>(),
         );
         let walls: Vec<BodyId> = bodies.iter().map(|(id, _)| *id).collect();
         sim.add_setup(move |setup| walls.iter().try_for_each(|&id| hold(id, setup.world)));
@@ -88,26 +83,18 @@ impl Formulation for Wall {
     }
 }
 
-/// Gives walls their weight.
-struct WallWeight {
+/// Walls have no mass, and with that no weight: the sum of forces on one begins with nothing, and becomes that
+/// of flows and contacts.
+struct NoForce {
     walls: BodySet,
-    /// Acceleration of gravity, m/s2.
-    gravity: DVec3,
 }
 
-impl Run for WallWeight {
+impl Run for NoForce {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         for id in step.part.due(step.world, &self.walls) {
             let (view, rows) = step.world.body_view(id);
-            let (mass, removed) = (view.read_own::<Mass>()?, view.read_own::<Removed>()?);
             let mut force = view.write_own::<Force>()?;
-            let slices = (&mut force[rows.clone()], &mass[rows.clone()], &removed[rows]);
-            type Rows<'a> = (&'a mut [Force], &'a [Mass], &'a [Removed]);
-            sum_over_own_blocks(slices, &|_, (force, mass, removed): Rows<'_>| {
-                for (k, force) in force.iter_mut().enumerate() {
-                    force.0 = if removed[k] == Removed::NO { self.gravity * mass[k].0 } else { DVec3::ZERO };
-                }
-            });
+            sum_over_own_blocks(&mut force[rows], &|_, force: &mut [Force]| force.fill(Force(DVec3::ZERO)));
         }
         Ok(())
     }
