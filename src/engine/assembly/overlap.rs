@@ -1,7 +1,8 @@
 //! Bodies that overlap. Without a contact no two particles of different bodies may start closer than half
 //! their spacing. Bodies with a contact touch with the surfaces of their shapes, whatever their spacings: no
 //! particle of one may start in the shape of the other; where both touch with their particles the first rule
-//! stays. Two rigid bodies are left to their contact.
+//! stays. Two rigid bodies are left to their contact, and so are half-spaces beside solids and rigid bodies:
+//! particles that stand for them are in no particular place, and two planes of a groove always overlap.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -42,6 +43,11 @@ pub(super) fn problems(bodies: &[BodyPlan], scene: &Scene, folder: &Path) -> Vec
                 let (a, b) = &contact.between;
                 [(a, b), (b, a)].contains(&names)
             });
+            let is_endless = |body: &BodyPlan| !body.bounds.is_bounded();
+            let is_solid = |body: &BodyPlan| matches!(body.kind, BodyKind::Rigid | BodyKind::Solid);
+            if (is_endless(first) || is_endless(second)) && is_solid(first) && is_solid(second) {
+                continue;
+            }
             let is_left = contact.is_some_and(|contact| {
                 match [first, second].map(|body| body.kind == BodyKind::Rigid) {
                     [true, true] => true,
@@ -105,6 +111,23 @@ mod tests {
         );
         let (scene, source) = parse(Source::new("overlap.ron", &text)).unwrap_or_else(|e| panic!("{e}"));
         build(&scene, &source, &Registry::standard()).err().map(|error| error.to_string())
+    }
+
+    #[test]
+    fn two_half_spaces_may_form_a_groove_of_any_angle() {
+        for slope in [0.02, 0.2, 0.5, 1.0, 3.0] {
+            let text = format!(
+                r#"(dimension: Two, materials: {{"m": NeoHookean(density: 1000, young: 1e7, poisson: 0.3)}},
+                    bodies: [
+                        (name: "one", material: "m", shape: HalfSpace(point: (0, 0), normal: ({slope:?}, 1)), spacing: 0.02, formulation: Rigid()),
+                        (name: "two", material: "m", shape: HalfSpace(point: (0, 0), normal: (-{slope:?}, 1)), spacing: 0.02, formulation: Rigid()),
+                    ],
+                    conditions: [Fix(on: Select())], time: (end: 1))"#
+            );
+            let (scene, source) = parse(Source::new("groove.ron", &text)).unwrap_or_else(|e| panic!("{e}"));
+            let error = build(&scene, &source, &Registry::standard()).err();
+            assert!(error.is_none(), "{slope}: {}", error.map_or_else(String::new, |e| e.to_string()));
+        }
     }
 
     #[test]

@@ -63,9 +63,9 @@ pub(super) fn apply(
     let forces = vec![Vec::new(); parts.len()];
     let law: Arc<dyn LoadLaw> = Arc::new(law);
     flow_load::add(label, &law, &parts, sim);
-    let on_rigid: Vec<bool> = parts.iter().map(|part| sim.body(part.body).kind == BodyKind::Rigid).collect();
-    let turns = on_rigid.contains(&true);
-    let load = Load { label, law, parts, on_rigid, forces, next: Vec::new() };
+    let kinds: Vec<BodyKind> = parts.iter().map(|part| sim.body(part.body).kind).collect();
+    let turns = kinds.contains(&BodyKind::Rigid);
+    let load = Load { label, law, parts, kinds, forces, next: Vec::new() };
     let mut system = System::new(Stage::External, label, load).on_phases(phases).by_body();
     if turns {
         system = system.touches_packed(RIGID_BODIES, Mode::Adds);
