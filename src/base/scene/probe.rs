@@ -109,8 +109,8 @@ pub enum Quantity {
     /// included: the weight of a body that hangs from its support points down. Of a rigid body it is that on
     /// the whole body. Walls and half-spaces have no weight: on them it is that of flows and contacts.
     Force,
-    /// Torque of the same forces about the centre of mass of the selection \[N m\]. A half-space has none: use
-    /// `Moment`.
+    /// Torque of the same forces about the centre of mass of the selection \[N m\]. A half-space has none:
+    /// use `Moment`.
     Torque,
     /// Moment of the same forces about a fixed point \[N m\].
     Moment {

@@ -83,8 +83,8 @@ impl Formulation for Wall {
     }
 }
 
-/// Walls have no mass, and with that no weight: the sum of forces on one begins with nothing, and becomes that
-/// of flows and contacts.
+/// Walls have no mass, and with that no weight: the sum of forces on one begins with nothing, and becomes
+/// that of flows and contacts.
 struct NoForce {
     walls: BodySet,
 }
