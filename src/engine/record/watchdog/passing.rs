@@ -22,12 +22,13 @@ pub(super) struct PassingBodies {
 }
 
 impl PassingBodies {
-    /// All pairs of solids and rigid bodies that have no contact.
+    /// All pairs of solids and rigid bodies that have no contact; two half-spaces always overlap.
     pub fn new(sim: &SimBuilder<'_>) -> Self {
         let touching = sim.touching_pairs();
         let solid = |body: &&BodyPlan| matches!(body.kind, BodyKind::Solid | BodyKind::Rigid);
         let bodies = || sim.bodies().iter().filter(solid);
         let all = bodies().flat_map(|a| bodies().filter(|b| a.id.0 < b.id.0).map(move |b| (a, b)));
+        let all = all.filter(|(a, b)| a.bounds.is_bounded() || b.bounds.is_bounded());
         let pairs: Vec<[BodyId; 2]> =
             all.filter(|(a, b)| !touching.has(&a.name, &b.name)).map(|(a, b)| [a.id, b.id]).collect();
         let spacings = sim.bodies().iter().map(|body| body.spacing).collect();
