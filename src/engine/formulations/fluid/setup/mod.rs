@@ -1,6 +1,8 @@
 //! The start of a flow: initial state, checks and notes.
 
+mod endless;
 mod sound_speed;
+mod spread;
 
 pub mod checks;
 

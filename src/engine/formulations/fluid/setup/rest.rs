@@ -2,15 +2,18 @@
 //!
 //! A line from each particle against gravity, through its fluid and the fluids above it, ends at a free
 //! surface: `p = sum_k rho_k g l_k` with the lengths l_k in each fluid. Where the line ends at a wall or a
-//! body, the pressure is continued hydrostatically from neighbouring particles that have one; in a fluid
-//! without a free surface it is zero at the highest point. Fluids that touch no wall and no body, alone or
-//! together, fall freely: their pressure is zero.
+//! body, the pressure is continued hydrostatically from neighbouring particles that have one; in fluids
+//! without a free surface, which are beside each other, it is zero at their highest point. Fluids that touch
+//! no wall and no body, alone or together, fall freely: their pressure is zero. Gravity along a periodic axis
+//! on which fluids are endless drives them, and causes no pressure.
 
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::endless;
+use super::spread::AllFluids;
 use super::start::StartPressure;
-use crate::neighbors::{Cloud, NeighborList};
+use crate::neighbors::Periodic;
 use crate::plugin::{SetupError, SimBuilder};
 use crate::scene::Expression;
 use crate::shapes::Region;
@@ -25,6 +28,8 @@ const BEYOND: f64 = 0.25;
 /// Distance of a particle from a wall, a body or another fluid below which its fluid touches it, over the
 /// spacing: particles begin half a spacing inside, and gaps narrower than two spacings cause a warning.
 const TOUCH: f64 = 2.5;
+/// Largest number of times that a line passes through periodic sides.
+const CROSSINGS: usize = 100;
 
 /// A fluid as a line through it sees it.
 struct Layer {
@@ -40,8 +45,10 @@ struct Layer {
 struct RestLines {
     layers: Vec<Layer>,
     covers: Vec<Box<dyn Region>>,
+    /// That which pressure balances.
     gravity: DVec3,
     spacing: f64,
+    periodic: Periodic,
 }
 
 /// The pressures at the start of the fluids, in the order of the scene; `given` are those that it gives.
@@ -50,7 +57,7 @@ pub fn pressures(
     support: f64,
     sim: &SimBuilder<'_>,
 ) -> Result<Vec<StartPressure>, SetupError> {
-    let rest = RestLines::new(fluids, sim);
+    let rest = RestLines::new(fluids, sim)?;
     let mut found: Vec<Vec<Option<f64>>> =
         (0..rest.layers.len()).map(|k| rest.below_surface(k, sim)).collect();
     if found.iter().flatten().any(Option::is_none) {
@@ -67,8 +74,24 @@ pub fn pressures(
     Ok(pressures.collect())
 }
 
+/// Gravity without its parts along the periodic axes on which the fluids are endless, m/s^2.
+fn balanced_gravity(layers: &[Layer], spacing: f64, sim: &SimBuilder<'_>) -> Result<DVec3, SetupError> {
+    let (mut gravity, periodic) = (sim.gravity(), sim.periodic());
+    if (0..3).any(|a| periodic.axes()[a] && gravity[a] != 0.0) {
+        let endless = endless::axes(&positions(layers, sim), spacing, &periodic)
+            .map_err(|error| SetupError::internal(&error))?;
+        (0..3).filter(|&a| endless[a]).for_each(|a| gravity[a] = 0.0);
+    }
+    Ok(gravity)
+}
+
+/// Positions of the particles of the fluids, one fluid after the other.
+fn positions(layers: &[Layer], sim: &SimBuilder<'_>) -> Vec<DVec3> {
+    layers.iter().flat_map(|layer| sim.body(layer.id).sites.iter().map(|site| site.position)).collect()
+}
+
 impl RestLines {
-    fn new(fluids: Vec<(BodyId, Option<Expression>)>, sim: &SimBuilder<'_>) -> Self {
+    fn new(fluids: Vec<(BodyId, Option<Expression>)>, sim: &SimBuilder<'_>) -> Result<Self, SetupError> {
         let region = |id: BodyId| {
             let shape = &sim.scene().bodies[id.0].shape;
             shape.region(sim.dimension(), sim.folder(), "shape").ok()
@@ -79,7 +102,9 @@ impl RestLines {
         let spacing = fluids.first().map_or(0.0, |(id, _)| sim.body(*id).spacing);
         let layer =
             |(id, given)| Layer { id, region: region(id), density: sim.body(id).material.density, given };
-        Self { covers, gravity: sim.gravity(), spacing, layers: fluids.into_iter().map(layer).collect() }
+        let layers: Vec<Layer> = fluids.into_iter().map(layer).collect();
+        let gravity = balanced_gravity(&layers, spacing, sim)?;
+        Ok(Self { covers, gravity, spacing, periodic: sim.periodic(), layers })
     }
 
     /// Whether each fluid touches a wall or a body, directly or by other fluids; so does one whose extent, or
@@ -117,16 +142,19 @@ impl RestLines {
         }
         let Some(up) = (-self.gravity).try_normalize() else { return Some(0.0) };
         let mut p = 0.0;
-        // Every turn leaves one fluid; lines do not come back into one that they have left.
-        for _ in 0..=2 * self.layers.len() {
+        // Every turn leaves one fluid, into which a line comes back through a periodic side alone.
+        for _ in 0..=2 * self.layers.len() + CROSSINGS {
             let layer = &self.layers[k];
             let length = self.distance_out(layer.region.as_deref()?, at, up);
             p += layer.density * self.gravity.length() * length;
             let step = BEYOND * self.spacing;
-            let beyond = at + (length + step) * up;
-            let holds = |layer: &Layer| layer.region.as_ref().is_some_and(|region| region.contains(beyond));
-            if let Some(next) = (0..self.layers.len()).find(|&other| other != k && holds(&self.layers[other]))
-            {
+            let end = at + (length + step) * up;
+            let beyond = self.periodic.wrap(end);
+            let holds = |other: usize| {
+                let region = self.layers[other].region.as_ref();
+                (other != k || beyond != end) && region.is_some_and(|region| region.contains(beyond))
+            };
+            if let Some(next) = (0..self.layers.len()).find(|&other| holds(other)) {
                 if let Some(given) = &self.layers[next].given {
                     return Some(p + given.eval(beyond, 0.0));
                 }
@@ -158,49 +186,31 @@ impl RestLines {
         length
     }
 
-    /// Gives particles without pressure that of those beside them, from one to the next.
+    /// Gives particles without pressure that of those beside them.
     fn spread(
         &self,
         found: &mut [Vec<Option<f64>>],
         support: f64,
         sim: &SimBuilder<'_>,
     ) -> Result<(), SetupError> {
-        let bodies = || self.layers.iter().map(|layer| sim.body(layer.id));
-        let positions: Vec<DVec3> =
-            bodies().flat_map(|body| body.sites.iter().map(|site| site.position)).collect();
-        let density: Vec<f64> =
-            self.layers.iter().zip(&*found).flat_map(|(layer, p)| vec![layer.density; p.len()]).collect();
-        let periodic = sim.periodic();
-        let list = NeighborList::reference(Cloud::uniform(&positions, support), &periodic)
-            .map_err(|error| SetupError::internal(&error))?;
-        let mut pressure: Vec<Option<f64>> = found.iter().flatten().copied().collect();
-        let weight = |i: usize, j: usize| {
-            let x_ji = periodic.minimal_image(positions[i] - positions[j]);
-            0.5 * (density[i] + density[j]) * self.gravity.dot(x_ji)
+        let of_each = || (0..self.layers.len()).flat_map(|k| vec![k; found[k].len()]);
+        let layers: Vec<usize> = of_each().collect();
+        let all = AllFluids {
+            positions: positions(&self.layers, sim),
+            densities: layers.iter().map(|&k| self.layers[k].density).collect(),
+            gravity: self.gravity,
+            spacing: self.spacing,
+            periodic: self.periodic,
         };
-        let mut rest: Vec<usize> = (0..pressure.len()).filter(|&i| pressure[i].is_none()).collect();
-        loop {
-            let beside = |i: usize| {
-                let known = list.row(i).iter().filter_map(|&j| Some((j as usize, pressure[j as usize]?)));
-                let (sum, count) =
-                    known.fold((0.0, 0), |(sum, count), (j, p)| (sum + p + weight(i, j), count + 1));
-                (count > 0).then(|| (i, sum / f64::from(count)))
-            };
-            let next: Vec<(usize, f64)> = rest.par_iter().filter_map(|&i| beside(i)).collect();
-            if next.is_empty() {
-                break;
-            }
-            next.into_iter().for_each(|(i, p)| pressure[i] = Some(p));
-            rest.retain(|&i| pressure[i].is_none());
-        }
-        let mut all = pressure.into_iter();
-        for ((layer, body), found) in self.layers.iter().zip(bodies()).zip(found) {
-            let top = DVec3::select(self.gravity.cmplt(DVec3::ZERO), body.bounds.max, body.bounds.min);
-            for (site, p) in body.sites.iter().zip(found) {
-                let below_top = || layer.density * self.gravity.dot(site.position - top);
-                *p = Some(all.next().flatten().unwrap_or_else(below_top));
-            }
-        }
+        let below_top = |i: usize| {
+            let (layer, at) = (&self.layers[layers[i]], all.positions[i]);
+            let up = (-self.gravity).normalize_or_zero();
+            let to_top = layer.region.as_deref().map(|region| self.distance_out(region, at, up));
+            layer.density * self.gravity.length() * to_top.unwrap_or(0.5 * self.spacing)
+        };
+        let mut pressure: Vec<Option<f64>> = found.iter().flatten().copied().collect();
+        all.spread(&mut pressure, support, below_top).map_err(|error| SetupError::internal(&error))?;
+        found.iter_mut().flatten().zip(pressure).for_each(|(found, pressure)| *found = pressure);
         Ok(())
     }
 }

@@ -100,3 +100,54 @@ fn what_falls_freely_has_no_pressure() {
     // Oil that rests on the water has the pressure of its weight.
     assert!(falls(&water(pool, &drop(0.1))) > 0.5 * 800.0 * 9.81 * 0.2);
 }
+
+#[test]
+fn gravity_along_an_endless_fluid_causes_no_pressure() {
+    let film = |gravity: &str, floor: &str| {
+        simulation(&format!(
+            r#"(dimension: Two, gravity: {gravity}, domain: (min: (0, -0.1), max: (0.4, 0.3), periodic: [X]),
+                materials: {{"oil": Fluid(density: 900.0, viscosity: 1.0, sound_speed: 30.0)}},
+                bodies: [
+                    (name: "oil", material: "oil", spacing: {SPACING}, formulation: Fluid,
+                     shape: Difference(Box(min: (0, 0), max: (0.4, 0.2)), Box(min: (0.14, -1), max: (0.2, {floor})))),
+                    (name: "bed", material: "wall", spacing: {SPACING}, formulation: Wall(slip: No),
+                     shape: Union([Box(min: (0, -0.06), max: (0.4, 0)), Box(min: (0.14, -0.06), max: (0.2, {floor}))])),
+                ],
+                time: (end: 1.0))"#
+        ))
+    };
+    let close = 1e-3 * 8829.0 * SPACING;
+    // A film on a slope of 30 degrees, also above a step on it, has the pressure of the part of its weight
+    // across the slope.
+    let across = 900.0 * 8.496;
+    let slope = error(&film("(4.905, -8.496)", "0.1"), 0, |_, y| across * (0.2 - y));
+    assert!(slope < close, "{slope}");
+    // A liquid that falls between two walls has none.
+    let falling = error(&film("(9.81, 0.0)", "0.1"), 0, |_, _| 0.0);
+    assert!(falling == 0.0, "{falling}");
+    // A wall across the period carries it: a column of 0.34 m above it, whose top is at the other side of it.
+    let column = error(&film("(-9.81, 0.0)", "0.2"), 0, |x, _| {
+        let above = if x > 0.17 { x - 0.2 } else { x + 0.2 };
+        8829.0 * (0.34 - above)
+    });
+    assert!(column < close, "{column}");
+}
+
+#[test]
+fn liquids_that_fill_a_closed_tank_have_one_pressure_at_their_interface() {
+    let both = simulation(&format!(
+        r#"(dimension: Two, gravity: (0.0, -9.81),
+            materials: {{"water": Fluid(density: 1000.0, sound_speed: 30.0), "oil": Fluid(density: 800.0, sound_speed: 30.0)}},
+            bodies: [
+                (name: "water", material: "water", shape: Box(min: (0, 0), max: (0.3, 0.2)), spacing: {SPACING}, formulation: Fluid),
+                (name: "oil", material: "oil", shape: Box(min: (0, 0.2), max: (0.3, 0.4)), spacing: {SPACING}, formulation: Fluid),
+                (name: "tank", material: "wall", spacing: {SPACING}, formulation: Wall(suction: true),
+                 shape: Difference(Box(min: (-0.06, -0.06), max: (0.36, 0.46)), Box(min: (0, 0), max: (0.3, 0.4)))),
+            ],
+            time: (end: 1.0))"#
+    ));
+    let of_oil = |y: f64| 800.0 * 9.81 * (0.4 - y);
+    let in_oil = error(&both, 1, |_, y| of_oil(y));
+    let in_water = error(&both, 0, |_, y| of_oil(0.2) + 9810.0 * (0.2 - y));
+    assert!(in_water.max(in_oil) < 1e-3 * 9810.0 * SPACING, "{in_water} {in_oil}");
+}
