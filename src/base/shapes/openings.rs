@@ -19,6 +19,9 @@ const SHARP: f64 = -0.9;
 /// Step across a face that is certainly on its other side, over the extent of the hole.
 const BESIDE: f64 = 1e-6;
 
+/// Halvings of the way to where a face is as near as an opening.
+const HALVINGS: usize = 6;
+
 impl<R: Region + ?Sized> DifferenceRegion<R> {
     /// Distance of a `point` from the remaining material of the whole, if the nearest face is an opening;
     /// `of_whole` and `of_hole` are its distances from the whole and from the hole \[m\].
@@ -36,13 +39,11 @@ impl<R: Region + ?Sized> DifferenceRegion<R> {
         if !is_open {
             return None;
         }
-        let reach = 0.5 * extent;
-        let [of_sides, beyond] = if of_whole < 0.0 {
-            [sideways(in_hole, point, -out, depth, reach), sideways(outside, foot, out, 0.0, reach)]
-        } else {
-            [sideways(outside, point, out, depth, reach), sideways(in_hole, foot, -out, 0.0, reach)]
-        };
-        Some(of_sides.min(depth.hypot(beyond)))
+        let search = Search { reach: 0.5 * extent, step: BESIDE * extent, axes: self.axes };
+        let within = search.beside(in_hole, foot, -out).distance(-out, -of_whole, depth);
+        let beyond = search.beside(outside, foot, out).distance(out, of_whole, depth);
+        // The opening is nearer than any face.
+        Some(within.min(beyond).clamp(depth, depth.hypot(search.reach)))
     }
 
     /// Distance of a `point` outside of the whole by `of_whole` and inside of the hole by `in_hole` \[m\],
@@ -55,8 +56,7 @@ impl<R: Region + ?Sized> DifferenceRegion<R> {
         ];
         let cos = faces[0].dot(faces[1]);
         let is_edge = cos > SHARP && in_hole > of_whole * cos && of_whole > in_hole * cos && cos < 1.0;
-        let square = of_whole * of_whole + in_hole * in_hole - 2.0 * of_whole * in_hole * cos;
-        is_edge.then(|| (square / (1.0 - cos * cos)).sqrt())
+        is_edge.then(|| from_edge(of_whole, in_hole, cos))
     }
 }
 
@@ -66,19 +66,76 @@ fn normal(distance: impl Fn(DVec3) -> f64, point: DVec3, step: f64, axes: usize)
     DVec3::AXES[..axes].iter().map(|&axis| slope(axis) * axis).sum::<DVec3>().normalize_or_zero()
 }
 
-/// Distance \[m\] from the material beside the ray from `start` along `out`, away from an opening at the
-/// distance `behind`: the distance function along the ray where it no longer increases like the distance from
-/// the opening.
-fn sideways(distance: impl Fn(DVec3) -> f64, start: DVec3, out: DVec3, behind: f64, reach: f64) -> f64 {
-    let (mut step, mut farthest) = (f64::max(behind, 1e-3 * reach), f64::MIN_POSITIVE);
-    loop {
-        step *= 2.0;
-        let found = distance(start + step * out);
-        farthest = farthest.max(found);
-        if found < 0.99 * (behind + step) || step > reach {
-            return farthest;
+/// Search for the material beside an opening, on one side of it.
+struct Search {
+    /// Longest way from the opening \[m\].
+    reach: f64,
+    /// Step of differences \[m\].
+    step: f64,
+    axes: usize,
+}
+
+/// Material beside a ray from the foot of a point on an opening.
+struct Beside {
+    /// Distance of the foot from the plane of the nearest face \[m\]; infinite where there is none.
+    distance: f64,
+    /// Normal of that face, none where the face is the end of the hole.
+    normal: Option<DVec3>,
+}
+
+impl Search {
+    /// The material beside the ray from `foot` along `inward`: the face that is nearest where it is as near as
+    /// the opening.
+    fn beside(&self, distance: impl Fn(DVec3) -> f64, foot: DVec3, inward: DVec3) -> Beside {
+        let at = |way: f64| distance(foot + way * inward);
+        let is_opening = |way: f64, found: f64| found >= 0.99 * way;
+        let (mut way, mut farthest) = (1e-3 * self.reach, f64::MIN_POSITIVE);
+        let mut before = 0.0;
+        loop {
+            let found = at(way);
+            farthest = farthest.max(found);
+            if !is_opening(way, found) {
+                break;
+            }
+            if way > self.reach {
+                return Beside { distance: f64::INFINITY, normal: None };
+            }
+            before = way;
+            way *= 2.0;
         }
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (before + way);
+            let found = at(middle);
+            farthest = farthest.max(found);
+            *(if is_opening(middle, found) { &mut before } else { &mut way }) = middle;
+        }
+        let normal = normal(&distance, foot + way * inward, self.step, self.axes);
+        let rise = normal.dot(inward);
+        if rise.abs() > -SHARP {
+            return Beside { distance: farthest, normal: None };
+        }
+        Beside { distance: at(way) - rise * way, normal: Some(normal) }
     }
+}
+
+impl Beside {
+    /// Distance of a point from this material, which is on the side of the opening in the direction `inward`
+    /// \[m\]; the point is `within` that side by so much, negative on the other one, `depth` from the opening.
+    fn distance(&self, inward: DVec3, within: f64, depth: f64) -> f64 {
+        let Some(normal) = self.normal else {
+            return if within > 0.0 { self.distance } else { depth.hypot(self.distance) };
+        };
+        let cos = -normal.dot(inward);
+        let off = self.distance - cos * within;
+        if -within <= off * cos { off } else { from_edge(-within, off, cos) }
+    }
+}
+
+/// Distance of a point from the edge of two planes, from which its distances are `first` and `second`, and
+/// whose normals have the cosine `cos`.
+fn from_edge(first: f64, second: f64, cos: f64) -> f64 {
+    let square = first * first + second * second - 2.0 * first * second * cos;
+    (square / (1.0 - cos * cos)).sqrt()
 }
 
 impl Shape {

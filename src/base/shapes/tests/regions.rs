@@ -179,6 +179,27 @@ fn a_hole_through_a_body_has_no_lid() {
     assert_eq!(channel.clearance(DVec3::new(0.5, -1.0, 0.0)), -0.5);
 }
 
+/// A channel that runs obliquely through a box: its walls are two triangles, also where it opens.
+#[test]
+fn an_oblique_channel_is_open_at_its_ends() {
+    let walls = shape(
+        "Difference(Box(min: (0, 0), max: (1, 1)), Polygon(points: [(0, 0), (0.3, 0), (1, 0.7), (1, 1), (0.7, 1), (0, 0.3)]))",
+    );
+    let walls = walls.cut_part_by_part().region(Two, Path::new(""), "shape").unwrap();
+    let triangles = ["(0.3, 0), (1, 0), (1, 0.7)", "(0, 0.3), (0.7, 1), (0, 1)"]
+        .map(|points| region(&format!("Polygon(points: [{points}])"), Two));
+    for along in [0.27, 0.28, 0.299, 0.301, 0.31, 0.33] {
+        for across in [-0.04, -0.02, -0.005, -0.001, 0.001, 0.005, 0.01, 0.03] {
+            for point in [(along, across), (across, along), (1.0 - along, 1.0 - across)] {
+                let point = DVec3::new(point.0, point.1, 0.0);
+                let right = triangles.iter().map(|wall| wall.distance(point)).fold(f64::INFINITY, f64::min);
+                let found = walls.clearance(point);
+                assert!(right <= 0.0 || (found - right).abs() < 1e-6, "{point}: {found} and {right}");
+            }
+        }
+    }
+}
+
 /// A slit in the floor of a tank, in the two orders and as one hole of two parts: the distance is that from
 /// the corners or sides of the slit, and it is continuous across the extensions of the sides.
 #[test]
@@ -200,13 +221,13 @@ fn a_slit_in_a_floor_is_open_and_has_no_sides_above_it() {
     let beside = |x: f64, y: f64, from: f64, to: f64| {
         f64::max(from - x, x - to).max(0.0).hypot(f64::max(-0.2 - y, y).max(0.0))
     };
-    for wall in walls {
-        let wall = shape(&wall).cut_part_by_part().region(Two, Path::new(""), "shape").unwrap();
+    for text in walls {
+        let wall = shape(&text).cut_part_by_part().region(Two, Path::new(""), "shape").unwrap();
         for x in [0.397, 0.399_999, 0.400_001, 0.402, 0.405, 0.41, 0.58, 0.599, 0.601] {
             for y in [-0.1, -0.02, -0.003, 0.001, 0.002, 0.0044, 0.02, 0.3] {
                 let found = wall.clearance(DVec3::new(x, y, 0.0));
                 let right = beside(x, y, -0.2, 0.4).min(beside(x, y, 0.6, 1.2));
-                assert!(right == 0.0 || (found - right).abs() < 1e-8, "{x} {y}: {found} and {right}");
+                assert!(right == 0.0 || (found - right).abs() < 1e-8, "{text} {x} {y}: {found} and {right}");
             }
         }
     }
