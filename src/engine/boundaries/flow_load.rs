@@ -10,7 +10,7 @@ use super::part::Part;
 use crate::formulations::fluid::{FLOW_LOADS, FlowCloud};
 use crate::plugin::{BodyKind, SimBuilder};
 use crate::schedule::{Mode, Run, Stage, Step, StepError, System};
-use crate::world::{Mass, ParticleId, PhaseId};
+use crate::world::{Mass, ParticleId, PhaseId, ReferenceVolume};
 
 /// Adds the system that passes a load on to fluids with boundaries.
 pub(super) fn add(label: &str, law: &Arc<dyn LoadLaw>, parts: &[Part], sim: &mut SimBuilder<'_>) {
@@ -26,9 +26,8 @@ pub(super) fn add(label: &str, law: &Arc<dyn LoadLaw>, parts: &[Part], sim: &mut
     let accelerations = vec![Vec::new(); parts.len()];
     let load = FlowLoad { law: Arc::clone(law), parts, accelerations };
     let system = System::new(Stage::Gradients, format!("{label}_of_flow"), load);
-    sim.add_system(
-        system.on_phases(phases).touches_packed(FLOW_LOADS, Mode::Adds).reads::<Mass>().reads::<ParticleId>(),
-    );
+    let system = system.on_phases(phases).touches_packed(FLOW_LOADS, Mode::Adds);
+    sim.add_system(system.reads::<Mass>().reads::<ReferenceVolume>().reads::<ParticleId>());
 }
 
 struct FlowLoad {

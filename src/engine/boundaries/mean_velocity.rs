@@ -1,8 +1,10 @@
 //! Flows driven at a constant mean velocity: a channel with a constant flux.
 //!
-//! A uniform force per mass g acts along the controlled axes. With the mean velocity u(n) of all bodies
-//! together at the end of a step, weighted by mass, `g(n) = g(n-1) + (U - u(n)) / (k^2 dt) - 2 (u(n) -
-//! u(n-1)) / (k dt)`: deviations decay like those of a critically damped oscillator, within some k steps.
+//! A uniform force per volume f acts along the controlled axes, as a pressure gradient does: where densities
+//! differ, a force per mass would carry the heavier body along. With the mean velocity u(n) of all bodies
+//! together at the end of a step, weighted by mass, and their mean density rho, `f(n) = f(n-1) + rho ((U -
+//! u(n)) / (k^2 dt) - 2 (u(n) - u(n-1)) / (k dt))`: deviations decay like those of a critically damped
+//! oscillator, within some k steps.
 
 use std::collections::BTreeSet;
 
@@ -17,10 +19,10 @@ use crate::parallel::{BlockSum, sum_over_blocks};
 use crate::plugin::{BodyKind, Plugin, Selection, SetupError, SimBuilder};
 use crate::scene::{PerAxis, Select};
 use crate::schedule::{Run, Shared, Stage, Step, StepError, System};
-use crate::world::{BodyId, BodySet, Mass, Removed, Velocity};
+use crate::world::{BodyId, BodySet, Mass, ReferenceVolume, Removed, Velocity};
 
-/// Keeps the mean velocity of bodies, weighted by mass, by a force per mass that is the same for all of their
-/// particles: the pressure gradient of a channel with a constant flux. Its work is in the account
+/// Keeps the mean velocity of bodies, weighted by mass, by a force per volume that is the same for all of
+/// their particles: the pressure gradient of a channel with a constant flux. Its work is in the account
 /// `mean_velocity`.
 ///
 /// A suspension in a periodic channel: `MeanVelocity(bodies: ["water", "grain*"], value: (1.0, None))`.
@@ -57,9 +59,10 @@ impl Plugin for MeanVelocity {
                 .in_long_steps()
                 .reads::<Velocity>()
                 .reads::<Mass>()
+                .reads::<ReferenceVolume>()
                 .reads::<Removed>(),
         );
-        load::apply("mean_velocity", Uniform(force), &selection, sim, System::reads::<Mass>);
+        load::apply("mean_velocity", Uniform(force), &selection, sim, System::reads::<ReferenceVolume>);
         Ok(())
     }
 }
@@ -139,24 +142,28 @@ struct Driven(BTreeSet<(BodyId, usize)>);
 /// The part that a checkpoint keeps.
 #[derive(Clone, Copy, Default, Serialize, Deserialize)]
 struct ControlState {
-    /// Force per mass, N/kg.
+    /// Force per volume, N/m3.
     force: DVec3,
     /// Mean velocity at the end of the last step, m/s; none before the first.
     last: Option<DVec3>,
 }
 
-/// The force per mass of this step, N/kg, for the system that applies it.
+/// The force per volume of this step, N/m3, for the system that applies it.
 #[derive(Clone, Copy, Default)]
 struct DrivingForce(DVec3);
 
-/// Momentum and mass.
 #[derive(Clone, Copy, Default)]
-struct Moving(DVec3, f64);
+struct Moving {
+    momentum: DVec3,
+    mass: f64,
+    volume: f64,
+}
 
 impl BlockSum for Moving {
     fn add(&mut self, next: &Self) {
-        self.0 += next.0;
-        self.1 += next.1;
+        self.momentum += next.momentum;
+        self.mass += next.mass;
+        self.volume += next.volume;
     }
 }
 
@@ -176,23 +183,25 @@ impl Run for MeasureFlow {
         for &body in &self.bodies {
             let (view, rows) = step.world.body_view(body);
             let (velocity, mass) = (view.read::<Velocity>()?, view.read::<Mass>()?);
-            let removed = view.read::<Removed>()?;
-            let all = (&velocity[rows.clone()], &mass[rows.clone()], &removed[rows]);
-            type Rows<'a> = (&'a [Velocity], &'a [Mass], &'a [Removed]);
-            moving.add(&sum_over_blocks(all, &|_, (velocity, mass, removed): Rows<'_>| {
+            let (volume, removed) = (view.read::<ReferenceVolume>()?, view.read::<Removed>()?);
+            let masses = (&mass[rows.clone()], &volume[rows.clone()]);
+            let all = (&velocity[rows.clone()], masses, &removed[rows]);
+            type Rows<'a> = (&'a [Velocity], (&'a [Mass], &'a [ReferenceVolume]), &'a [Removed]);
+            moving.add(&sum_over_blocks(all, &|_, (velocity, (mass, volume), removed): Rows<'_>| {
                 let mut sum = Moving::default();
                 for (k, velocity) in velocity.iter().enumerate().filter(|(k, _)| removed[*k] == Removed::NO) {
-                    sum.add(&Moving(mass[k].0 * velocity.0, mass[k].0));
+                    let (mass, volume) = (mass[k].0, volume[k].0);
+                    sum.add(&Moving { momentum: mass * velocity.0, mass, volume });
                 }
                 sum
             }));
         }
         let dt = step.clock.dt;
-        if moving.1 > 0.0 && dt > 0.0 {
-            let (mean, state) = (moving.0 / moving.1, &mut self.state);
+        if moving.mass > 0.0 && dt > 0.0 {
+            let (mean, state) = (moving.momentum / moving.mass, &mut self.state);
             let change = mean - state.last.unwrap_or(mean);
             let correction = (self.wanted - mean) / (STEPS * STEPS) - 2.0 * change / STEPS;
-            state.force += self.axes * correction / dt;
+            state.force += self.axes * correction * (moving.mass / moving.volume) / dt;
             state.last = Some(mean);
         }
         step.resources.of_mut(self.force).0 = self.state.force;
@@ -210,15 +219,15 @@ impl Run for MeasureFlow {
     }
 }
 
-/// The force per mass, the same for all particles.
+/// The force per volume, the same for all particles.
 struct Uniform(Shared<DrivingForce>);
 
 impl LoadLaw for Uniform {
     fn forces(&self, _: usize, part: &Part, step: &Step<'_>, out: &mut Vec<DVec3>) -> Result<(), StepError> {
         let force = step.resources.of(self.0).0;
-        let mass = step.world.body_view(part.body).0.read::<Mass>()?;
+        let volume = step.world.body_view(part.body).0.read::<ReferenceVolume>()?;
         out.clear();
-        out.extend(part.rows.iter().map(|&row| force * mass[row as usize].0));
+        out.extend(part.rows.iter().map(|&row| force * volume[row as usize].0));
         Ok(())
     }
 

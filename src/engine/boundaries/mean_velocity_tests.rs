@@ -71,3 +71,21 @@ fn fluid_and_grains_are_driven_together() {
     assert!((mean(&sim, &[0, 2]).0 - 0.1).abs() < 1e-3, "{:?}", mean(&sim, &[0, 2]));
     assert!(mean(&sim, &[2]).0 > 0.1, "it is in the middle, where the flow is fastest");
 }
+
+#[test]
+fn a_heavy_liquid_is_driven_as_hard_as_a_light_one_beside_it() {
+    let mut sim = simulation(
+        r#"(dimension: Two, domain: (min: (0, -1), max: (0.2, 1), periodic: [X]),
+            materials: {"water": Fluid(density: 1000, sound_speed: 10), "brine": Fluid(density: 2000, sound_speed: 10)},
+            bodies: [(name: "water", material: "water", spacing: 0.01, formulation: Fluid, shape: Box(min: (0, 0.05), max: (0.2, 0.1))),
+                     (name: "brine", material: "brine", spacing: 0.01, formulation: Fluid, shape: Box(min: (0, 0), max: (0.2, 0.05))),
+                     (name: "walls", material: "none", spacing: 0.01, formulation: Wall(slip: Free, suction: true),
+                      shape: Union([Box(min: (0, -0.04), max: (0.2, 0)), Box(min: (0, 0.1), max: (0.2, 0.14))]))],
+            conditions: [MeanVelocity(bodies: ["water", "brine"], value: (0.1, None))],
+            time: (end: 0.1))"#,
+    );
+    sim.run(|_| true).unwrap();
+    // A pressure gradient accelerates each by its own density: (1000 v + 2000 v / 2) / 3000 = 0.1 m/s.
+    let (water, brine) = (mean(&sim, &[0]).0, mean(&sim, &[1]).0);
+    assert!((water - 0.15).abs() < 1e-3 && (brine - 0.075).abs() < 1e-3, "{water} {brine}");
+}

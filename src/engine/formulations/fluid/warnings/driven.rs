@@ -30,7 +30,7 @@ pub fn look(is_told: &mut bool, diffusion: Option<&str>, cloud: &FlowCloud, step
     }
     *is_told = true;
     step.warnings.push(format!(
-        "`{diffusion}` has taken {} of the {} that walls have done on {} by {}, {:.0} %: where nothing breaks, forces on what drives the flow are too small by about as much; \
+        "`{diffusion}` has taken {} of the {} that walls have done on {} by {}, {:.0} %: where they push one way and nothing breaks, forces on them are too small by about as much, and where they move to and fro, the waves that they leave behind wear off; \
          a fluid tears where it passes the end of a wall, as a jet does behind the lips of a slot (15 and 7 %, 8 and 16 particles across), and waves of less than a spacing wear off; take more particles",
         quantity(taken, "J"),
         quantity(work, "J"),
