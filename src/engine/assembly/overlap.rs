@@ -15,6 +15,9 @@ use crate::plugin::{BodyKind, BodyPlan, contact_pairs};
 use crate::scene::{Contact, ContactSurface, Problem, Scene};
 use crate::shapes::Region;
 
+/// Distance from a face below which a particle is on it, over the spacing.
+const ON_FACE: f64 = 1e-6;
+
 /// One problem for every pair of bodies that overlap. Files of shapes are looked for in `folder`.
 pub(super) fn problems(bodies: &[BodyPlan], scene: &Scene, folder: &Path) -> Vec<Problem> {
     let contacts: Vec<Contact> = contact_pairs(scene, bodies).map(|(_, contact)| contact).collect();
@@ -61,11 +64,13 @@ pub(super) fn problems(bodies: &[BodyPlan], scene: &Scene, folder: &Path) -> Vec
             reported.push(pair);
             let message =
                 format!("body `{}` overlaps body `{}` at {}", second.name, first.name, place(positions[i]));
-            problems.push(
-                Problem::at_path(format!("bodies[{}].shape", pair.1), message)
+            let problem = Problem::at_path(format!("bodies[{}].shape", pair.1), message);
+            problems.push(match shapes.share_face([pair.0, pair.1], positions[i], ON_FACE * first.spacing) {
+                true => problem.help("a face that the shapes share runs through centres of their lattices, where both have particles: move it by a quarter of a spacing"),
+                false => problem
                     .help("leave a gap of about the mean spacing between particles of different bodies")
                     .help("a body clamped in another one: cut its place out of the other by `Difference`"),
-            );
+            });
         }
     }
     problems
@@ -84,12 +89,20 @@ impl Shapes<'_> {
         !self.holds(pair[0], at[1]) && !self.holds(pair[1], at[0])
     }
 
+    /// Whether a point is on the surface of both bodies.
+    fn share_face(&mut self, pair: [usize; 2], at: DVec3, within: f64) -> bool {
+        pair.iter().all(|&body| self.region(body).is_some_and(|region| region.distance(at).abs() < within))
+    }
+
     /// Whether a point is in a body; also where its shape is not known.
     fn holds(&mut self, body: usize, x: DVec3) -> bool {
+        self.region(body).is_none_or(|region| region.distance(x) < 0.0)
+    }
+
+    fn region(&mut self, body: usize) -> Option<&dyn Region> {
         let (scene, folder) = (self.scene, self.folder);
         let make = || scene.bodies[body].shape.region(scene.dimension, folder, "shape").ok();
-        let region = self.regions.entry(body).or_insert_with(make);
-        region.as_ref().is_none_or(|region| region.distance(x) < 0.0)
+        self.regions.entry(body).or_insert_with(make).as_deref()
     }
 }
 
@@ -128,6 +141,29 @@ mod tests {
             let error = build(&scene, &source, &Registry::standard()).err();
             assert!(error.is_none(), "{slope}: {}", error.map_or_else(String::new, |e| e.to_string()));
         }
+    }
+
+    #[test]
+    fn a_shared_face_through_centres_of_cells_is_told_from_bodies_that_overlap() {
+        let of = |low: &str| {
+            let text = format!(
+                r#"(dimension: Two, materials: {{"m": NeoHookean(density: 1000, young: 1e7, poisson: 0.3)}},
+                    bodies: [
+                        (name: "upper", material: "m", shape: Polygon(points: [(0, 0), (1, 1), (0, 1)]), spacing: 0.1, formulation: TotalLagrangian),
+                        (name: "lower", material: "m", shape: Polygon(points: [{low}]), spacing: 0.1, formulation: TotalLagrangian),
+                    ],
+                    time: (end: 1))"#
+            );
+            let (scene, source) = parse(Source::new("overlap.ron", &text)).unwrap_or_else(|e| panic!("{e}"));
+            build(&scene, &source, &Registry::standard())
+                .err()
+                .map(|error| error.to_string())
+                .unwrap_or_default()
+        };
+        let says = |text: &str| text.contains("a face that the shapes share");
+        let (shared, overlapping) = (of("(0, 0), (1, 1), (1, 0)"), of("(0, 0), (1, 1), (0.2, 1), (0, 0.8)"));
+        assert!(says(&shared), "{shared}");
+        assert!(overlapping.contains("overlaps") && !says(&overlapping), "{overlapping}");
     }
 
     #[test]

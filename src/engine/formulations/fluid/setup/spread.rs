@@ -31,11 +31,11 @@ impl AllFluids {
         below_top: impl Fn(usize) -> f64,
     ) -> Result<(), NeighborError> {
         let list = NeighborList::reference(Cloud::uniform(&self.positions, support), &self.periodic)?;
-        self.from_known(pressure, &list);
+        self.spread_known(pressure, &list);
         while let Some(first) = pressure.iter().position(Option::is_none) {
             let rest: Vec<usize> = (first..pressure.len()).filter(|&i| pressure[i].is_none()).collect();
             pressure[first] = Some(0.0);
-            self.from_known(pressure, &list);
+            self.spread_known(pressure, &list);
             let piece = || rest.iter().filter_map(|&i| Some((i, pressure[i]?)));
             let Some((highest, least)) = piece().min_by(|a, b| a.1.total_cmp(&b.1)) else { break };
             let raise = below_top(highest) - least;
@@ -44,7 +44,7 @@ impl AllFluids {
         Ok(())
     }
 
-    fn from_known(&self, pressure: &mut [Option<f64>], list: &NeighborList) {
+    fn spread_known(&self, pressure: &mut [Option<f64>], list: &NeighborList) {
         let mut rest: Vec<usize> = (0..pressure.len()).filter(|&i| pressure[i].is_none()).collect();
         loop {
             let found = |far| -> Vec<(usize, f64)> {
