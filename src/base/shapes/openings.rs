@@ -39,7 +39,7 @@ impl<R: Region + ?Sized> DifferenceRegion<R> {
         if !is_open {
             return None;
         }
-        let search = Search { reach: 0.5 * extent, step: BESIDE * extent, axes: self.axes };
+        let search = OpeningSearch { reach: 0.5 * extent, step: BESIDE * extent, axes: self.axes };
         let within = search.beside(in_hole, foot, -out).distance(-out, -of_whole, depth);
         let beyond = search.beside(outside, foot, out).distance(out, of_whole, depth);
         // The opening is nearer than any face.
@@ -67,7 +67,7 @@ fn normal(distance: impl Fn(DVec3) -> f64, point: DVec3, step: f64, axes: usize)
 }
 
 /// Search for the material beside an opening, on one side of it.
-struct Search {
+struct OpeningSearch {
     /// Longest way from the opening \[m\].
     reach: f64,
     /// Step of differences \[m\].
@@ -76,17 +76,17 @@ struct Search {
 }
 
 /// Material beside a ray from the foot of a point on an opening.
-struct Beside {
+struct MaterialBeside {
     /// Distance of the foot from the plane of the nearest face \[m\]; infinite where there is none.
     distance: f64,
     /// Normal of that face, none where the face is the end of the hole.
     normal: Option<DVec3>,
 }
 
-impl Search {
-    /// The material beside the ray from `foot` along `inward`: the face that is nearest where it is as near as
-    /// the opening.
-    fn beside(&self, distance: impl Fn(DVec3) -> f64, foot: DVec3, inward: DVec3) -> Beside {
+impl OpeningSearch {
+    /// The material beside the ray from `foot` along `inward`: the face that is nearest where it is as near
+    /// as the opening.
+    fn beside(&self, distance: impl Fn(DVec3) -> f64, foot: DVec3, inward: DVec3) -> MaterialBeside {
         let at = |way: f64| distance(foot + way * inward);
         let is_opening = |way: f64, found: f64| found >= 0.99 * way;
         let (mut way, mut farthest) = (1e-3 * self.reach, f64::MIN_POSITIVE);
@@ -98,7 +98,7 @@ impl Search {
                 break;
             }
             if way > self.reach {
-                return Beside { distance: f64::INFINITY, normal: None };
+                return MaterialBeside { distance: f64::INFINITY, normal: None };
             }
             before = way;
             way *= 2.0;
@@ -112,15 +112,16 @@ impl Search {
         let normal = normal(&distance, foot + way * inward, self.step, self.axes);
         let rise = normal.dot(inward);
         if rise.abs() > -SHARP {
-            return Beside { distance: farthest, normal: None };
+            return MaterialBeside { distance: farthest, normal: None };
         }
-        Beside { distance: at(way) - rise * way, normal: Some(normal) }
+        MaterialBeside { distance: at(way) - rise * way, normal: Some(normal) }
     }
 }
 
-impl Beside {
+impl MaterialBeside {
     /// Distance of a point from this material, which is on the side of the opening in the direction `inward`
-    /// \[m\]; the point is `within` that side by so much, negative on the other one, `depth` from the opening.
+    /// \[m\]; the point is `within` that side by so much, negative on the other one, and `depth` from the
+    /// opening.
     fn distance(&self, inward: DVec3, within: f64, depth: f64) -> f64 {
         let Some(normal) = self.normal else {
             return if within > 0.0 { self.distance } else { depth.hypot(self.distance) };
