@@ -30,11 +30,11 @@ impl Shape {
             Self::Intersection(shapes) => {
                 Box::new(Intersection { parts: check.parts(shapes, Self::region)?, axes })
             }
-            Self::Difference(whole, hole) => Box::new(DifferenceRegion {
-                whole: whole.region(dimension, folder, &check.entry(0))?,
-                hole: hole.region(dimension, folder, &check.entry(1))?,
+            Self::Difference(whole, hole) => Box::new(DifferenceRegion::new(
+                whole.region(dimension, folder, &check.entry(0))?,
+                hole.region(dimension, folder, &check.entry(1))?,
                 axes,
-            }),
+            )),
             Self::Translate { shape, by } => {
                 let by = check.point("by", *by)?;
                 Box::new(Translated { region: shape.region(dimension, folder, &check.field("shape"))?, by })
@@ -80,7 +80,7 @@ impl Shape {
             Self::Difference(whole, hole) => {
                 let whole = whole.surface(dimension, folder, &check.entry(0))?;
                 let hole = hole.surface(dimension, folder, &check.entry(1))?;
-                let difference = DifferenceRegion { whole, hole, axes };
+                let difference = DifferenceRegion::new(whole, hole, axes);
                 if !difference.is_hollow(difference.tolerance()) {
                     return none("the hole of the difference cuts the surface of the first shape");
                 }

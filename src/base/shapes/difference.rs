@@ -14,9 +14,17 @@ pub(super) struct DifferenceRegion<R: ?Sized> {
     pub whole: Box<R>,
     pub hole: Box<R>,
     pub axes: usize,
+    /// Kept, as every question whether it contains a point needs them.
+    bounds: Aabb,
 }
 
 impl<R: Region + ?Sized> DifferenceRegion<R> {
+    /// The difference, in two or three dimensions.
+    pub fn new(whole: Box<R>, hole: Box<R>, axes: usize) -> Self {
+        let bounds = bounds_of(whole.as_ref(), hole.as_ref(), axes);
+        Self { whole, hole, axes, bounds }
+    }
+
     /// Whether the hole, extended by `margin` \[m\], is certainly inside the whole.
     pub fn is_hollow(&self, margin: f64) -> bool {
         holds(self.whole.as_ref(), &self.hole.bounds().grown(margin), self.axes)
@@ -41,19 +49,8 @@ impl<R: Region + ?Sized> Region for DifferenceRegion<R> {
         self.through_opening(point, whole, hole).or_else(edge).unwrap_or(distance)
     }
 
-    /// The bounds of the whole, reduced where a hole removes an entire end of it.
     fn bounds(&self) -> Aabb {
-        let mut bounds = self.whole.bounds();
-        for axis in 0..self.axes {
-            let Some([from, to]) = self.hole.slab(axis, &bounds) else { continue };
-            let (min, max) = (bounds.min[axis], bounds.max[axis]);
-            if from <= min && to < max {
-                bounds.min[axis] = to.max(min);
-            } else if to >= max && from > min {
-                bounds.max[axis] = from.min(max);
-            }
-        }
-        bounds
+        self.bounds
     }
 
     fn volume(&self) -> Option<f64> {
@@ -109,6 +106,21 @@ impl<R: Surface + ?Sized> Surface for DifferenceRegion<R> {
     fn moments(&self) -> Option<Moments> {
         Some(self.whole.moments()?.joined(self.hole.moments()?, -1.0))
     }
+}
+
+/// The bounds of the whole, reduced where a hole removes an entire end of it.
+fn bounds_of<R: Region + ?Sized>(whole: &R, hole: &R, axes: usize) -> Aabb {
+    let mut bounds = whole.bounds();
+    for axis in 0..axes {
+        let Some([from, to]) = hole.slab(axis, &bounds) else { continue };
+        let (min, max) = (bounds.min[axis], bounds.max[axis]);
+        if from <= min && to < max {
+            bounds.min[axis] = to.max(min);
+        } else if to >= max && from > min {
+            bounds.max[axis] = from.min(max);
+        }
+    }
+    bounds
 }
 
 /// Whether `region` certainly contains `part`: either it is a single box that does, or the circumscribed ball

@@ -1,6 +1,7 @@
 //! Thickness of bodies beside a fluid.
 
 use glam::{DMat3, DVec3};
+use rayon::prelude::*;
 
 use crate::linalg::{Eigen, Sym3};
 use crate::neighbors::{Cloud, NeighborList, Periodic};
@@ -60,7 +61,7 @@ impl Thickness {
                 row().map(|x| x.dot(across)).fold((0.0, 0.0), |(a, b): (f64, f64), x| (a.min(x), b.max(x)));
             high - low + spacing
         };
-        let values = (0..positions.len()).map(thickness).collect();
+        let values = (0..positions.len()).into_par_iter().map(thickness).collect();
         Ok(Self { positions, spacing, support, neighbors, values })
     }
 
@@ -104,7 +105,8 @@ impl Thickness {
                 move |j: &&u32| (self.positions[**j as usize] - self.positions[i]).length() <= radius;
             self.neighbors.row(i).iter().filter(within)
         };
-        let counts: Vec<usize> = (0..self.positions.len()).map(|i| near(i, radius).count()).collect();
+        let particles = (0..self.positions.len()).into_par_iter();
+        let counts: Vec<usize> = particles.map(|i| near(i, radius).count()).collect();
         let full = FULL * counts.iter().copied().max().unwrap_or(0) as f64;
         let is_core = |i: usize| !self.is_thin(i) && counts[i] as f64 >= full;
         let mut thin = vec![true; self.positions.len()];

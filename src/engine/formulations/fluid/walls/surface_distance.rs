@@ -258,12 +258,22 @@ impl BoundaryShape {
 
     /// Distance from the shape or from its nearest periodic image, m, exact up to the reach.
     pub fn distance(&self, cloud: &FlowCloud, at: DVec3) -> f64 {
+        self.least_of_images(cloud, at, |x| self.region.clearance(x))
+    }
+
+    /// Whether a place is outside of the body: the sign of its distance, which takes less time.
+    pub fn is_outside(&self, cloud: &FlowCloud, at: DVec3) -> bool {
+        self.least_of_images(cloud, at, |x| self.region.distance(x)) > 0.0
+    }
+
+    /// The least distance of a place and of its periodic images that the body may be near.
+    fn least_of_images(&self, cloud: &FlowCloud, at: DVec3, distance_of: impl Fn(DVec3) -> f64) -> f64 {
         if !cloud.periods.any() {
-            return self.region.clearance(at);
+            return distance_of(at);
         }
         let periodic = cloud.pairs.periodic();
         let (lengths, inside) = (periodic.lengths(), periodic.wrap(at));
-        let mut distance = self.region.clearance(inside);
+        let mut distance = distance_of(inside);
         // Beyond a side of the domain that is near, the body may go on.
         let from_low = inside - periodic.min();
         let side = |axis: usize, low: bool| {
@@ -274,7 +284,7 @@ impl BoundaryShape {
             let digits = [n % 3, n / 3 % 3, n / 9];
             if (0..3).all(|axis| digits[axis] == 0 || side(axis, digits[axis] == 1)) {
                 let turns = DVec3::from_array(digits.map(|digit| [0.0, 1.0, -1.0][digit]));
-                distance = distance.min(self.region.clearance(inside + turns * lengths));
+                distance = distance.min(distance_of(inside + turns * lengths));
             }
         }
         distance

@@ -4,6 +4,8 @@
 //! effective position of a surface is wrong by up to half a spacing, and forces are those of uneven
 //! particles. `sum_j V_j W_ij` of the particles beside the boundary shows it.
 
+use rayon::prelude::*;
+
 use super::filling::FillingPass;
 use crate::formulations::fluid::cloud::{FlowCloud, RowSums};
 use crate::schedule::Step;
@@ -41,8 +43,9 @@ pub fn look(cloud: &FlowCloud, scratch: &mut Vec<Option<f64>>, step: &mut Step<'
                 continue;
             }
             let names = || [fluid.body, boundary.body].map(|body| &step.world.body(body).name);
+            let particles = fluid.cloud.clone().into_par_iter();
             let facing: Vec<f64> =
-                fluid.cloud.clone().filter_map(|i| distance_across(cloud, i, boundary.body)).collect();
+                particles.filter_map(|i| distance_across(cloud, i, boundary.body)).collect();
             let across = || facing.iter().filter(|distance| ACROSS.contains(distance));
             if across().count() >= MIN_COUNT && across().count() as f64 > PART * facing.len() as f64 {
                 let gap = mean(across().copied()) - 1.0;

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::formulations::fluid::cloud::FlowCloud;
 use crate::formulations::fluid::walls::surface_distance::BoundaryShape;
@@ -30,22 +31,24 @@ pub fn add_edges(
     let limit = OUTSIDE[usize::from(!cloud.plane)];
     let seen = SeenShape {
         distance: |at| shape.distance(cloud, at),
+        is_outside: |at| shape.is_outside(cloud, at),
         gradient: |at| shape.gradient(cloud, at),
         spacing: shape.spacing,
     };
     let is_edge = |at: DVec3| seen.open_part(at, &points).is_some_and(|part| part > limit);
-    let at_edges = reference.iter().enumerate().filter(|(_, place)| is_edge(place.0));
-    out.extend(at_edges.map(|(k, _)| shape.group.cloud.start + k));
+    let at_edges = reference.par_iter().enumerate().filter(|(_, place)| is_edge(place.0));
+    out.par_extend(at_edges.map(|(k, _)| shape.group.cloud.start + k));
 }
 
-/// A shape by its distance, m, with the spacing of its particles, m.
-struct SeenShape<D, G> {
+/// A shape by its distance, m, and the sign of it, with the spacing of its particles, m.
+struct SeenShape<D, O, G> {
     distance: D,
+    is_outside: O,
     gradient: G,
     spacing: f64,
 }
 
-impl<D: Fn(DVec3) -> f64, G: Fn(DVec3) -> DVec3> SeenShape<D, G> {
+impl<D: Fn(DVec3) -> f64, O: Fn(DVec3) -> bool, G: Fn(DVec3) -> DVec3> SeenShape<D, O, G> {
     /// Part of the sphere around a particle that is outside of the shape; none of a particle that is not near
     /// its surface.
     fn open_part(&self, at: DVec3, points: &[DVec3]) -> Option<f64> {
@@ -56,7 +59,7 @@ impl<D: Fn(DVec3) -> f64, G: Fn(DVec3) -> DVec3> SeenShape<D, G> {
         // As from the first row of a lattice, wherever the particle is.
         let out = (self.gradient)(at).normalize_or_zero();
         let from = at + (depth - 0.5 * self.spacing) * out;
-        let is_outside = |unit: &&DVec3| (self.distance)(from + RADIUS * self.spacing * **unit) > 0.0;
+        let is_outside = |unit: &&DVec3| (self.is_outside)(from + RADIUS * self.spacing * **unit);
         Some(points.iter().filter(is_outside).count() as f64 / points.len() as f64)
     }
 }
@@ -85,14 +88,17 @@ mod tests {
         ["Regular", "Hexagonal", "BodyFitted(iterations: 10)", "Relaxed(seed: 1, iterations: 30)"];
 
     /// An edge at the origin of that angle, along z: its faces are behind it, one below y = 0.
-    fn edge(angle: f64, spacing: f64) -> SeenShape<impl Fn(DVec3) -> f64, impl Fn(DVec3) -> DVec3> {
+    fn edge(
+        angle: f64,
+        spacing: f64,
+    ) -> SeenShape<impl Fn(DVec3) -> f64, impl Fn(DVec3) -> bool, impl Fn(DVec3) -> DVec3> {
         let normals = [DVec3::Y, DVec3::new(angle.sin(), -angle.cos(), 0.0)];
         let distance =
             move |at: DVec3| normals.map(|normal| normal.dot(at)).into_iter().fold(f64::MIN, f64::max);
         let gradient = move |at: DVec3| {
             if normals[0].dot(at) > normals[1].dot(at) { normals[0] } else { normals[1] }
         };
-        SeenShape { distance, gradient, spacing }
+        SeenShape { distance, is_outside: move |at| distance(at) > 0.0, gradient, spacing }
     }
 
     /// The particles of a wall of that angle.
@@ -156,7 +162,8 @@ mod tests {
             let points = sphere(plane);
             let is_seen = |radius: f64| {
                 let distance = |at: DVec3| at.length() - radius;
-                let ball = SeenShape { distance, gradient: |at| at, spacing: 1.0 };
+                let is_outside = |at: DVec3| distance(at) > 0.0;
+                let ball = SeenShape { distance, is_outside, gradient: |at| at, spacing: 1.0 };
                 let part = ball.open_part((radius - 0.5) * DVec3::X, &points);
                 part.is_some_and(|part| part > OUTSIDE[usize::from(!plane)])
             };
