@@ -161,7 +161,7 @@ mod tests {
                 .unwrap_or_default()
         };
         let says = |text: &str| text.contains("a face that the shapes share");
-        let (shared, overlapping) = (of("(0, 0), (1, 1), (1, 0)"), of("(0, 0), (1, 1), (0.2, 1), (0, 0.8)"));
+        let (shared, overlapping) = (of("(0, 0), (1, 1), (1, 0)"), of("(0, 0.2), (0.8, 1), (0, 1)"));
         assert!(says(&shared), "{shared}");
         assert!(overlapping.contains("overlaps") && !says(&overlapping), "{overlapping}");
     }
