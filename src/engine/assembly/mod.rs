@@ -17,6 +17,7 @@ mod overlap;
 mod placement;
 mod placing;
 mod plausibility;
+mod rows_on_faces;
 mod spawn;
 mod standard;
 mod support_faces;
