@@ -261,9 +261,9 @@ impl BoundaryShape {
         self.least_of_images(cloud, at, |x| self.region.clearance(x))
     }
 
-    /// Whether a place is outside of the body: the sign of its distance, which takes less time.
-    pub fn is_outside(&self, cloud: &FlowCloud, at: DVec3) -> bool {
-        self.least_of_images(cloud, at, |x| self.region.distance(x)) > 0.0
+    /// A bound of that distance, m, which takes less time: its sign is exact, and it is no larger.
+    pub fn distance_bound(&self, cloud: &FlowCloud, at: DVec3) -> f64 {
+        self.least_of_images(cloud, at, |x| self.region.distance(x))
     }
 
     /// The least distance of a place and of its periodic images that the body may be near.

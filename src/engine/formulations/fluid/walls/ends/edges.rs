@@ -27,11 +27,11 @@ pub fn add_edges(
     reference: &[ReferencePosition],
     out: &mut Vec<usize>,
 ) {
-    let points = sphere(cloud.plane);
+    let points = SpherePoints::new(cloud.plane);
     let limit = OUTSIDE[usize::from(!cloud.plane)];
     let seen = SeenShape {
         distance: |at| shape.distance(cloud, at),
-        is_outside: |at| shape.is_outside(cloud, at),
+        bound: |at| shape.distance_bound(cloud, at),
         gradient: |at| shape.gradient(cloud, at),
         spacing: shape.spacing,
     };
@@ -40,18 +40,18 @@ pub fn add_edges(
     out.par_extend(at_edges.map(|(k, _)| shape.group.cloud.start + k));
 }
 
-/// A shape by its distance, m, and the sign of it, with the spacing of its particles, m.
-struct SeenShape<D, O, G> {
+/// A shape by its distance, m, and a bound of that with its sign, with the spacing of its particles, m.
+struct SeenShape<D, B, G> {
     distance: D,
-    is_outside: O,
+    bound: B,
     gradient: G,
     spacing: f64,
 }
 
-impl<D: Fn(DVec3) -> f64, O: Fn(DVec3) -> bool, G: Fn(DVec3) -> DVec3> SeenShape<D, O, G> {
+impl<D: Fn(DVec3) -> f64, B: Fn(DVec3) -> f64, G: Fn(DVec3) -> DVec3> SeenShape<D, B, G> {
     /// Part of the sphere around a particle that is outside of the shape; none of a particle that is not near
     /// its surface.
-    fn open_part(&self, at: DVec3, points: &[DVec3]) -> Option<f64> {
+    fn open_part(&self, at: DVec3, points: &SpherePoints) -> Option<f64> {
         let depth = -(self.distance)(at);
         if !(0.0..DEPTH * self.spacing).contains(&depth) {
             return None;
@@ -59,23 +59,60 @@ impl<D: Fn(DVec3) -> f64, O: Fn(DVec3) -> bool, G: Fn(DVec3) -> DVec3> SeenShape
         // As from the first row of a lattice, wherever the particle is.
         let out = (self.gradient)(at).normalize_or_zero();
         let from = at + (depth - 0.5 * self.spacing) * out;
-        let is_outside = |unit: &&DVec3| (self.is_outside)(from + RADIUS * self.spacing * **unit);
-        Some(points.iter().filter(is_outside).count() as f64 / points.len() as f64)
+        let radius = RADIUS * self.spacing;
+        Some(points.part(radius, |unit| (self.bound)(from + radius * unit)))
     }
 }
 
-/// Unit vectors in all directions, evenly: on a circle, or on a spiral around a sphere.
-fn sphere(plane: bool) -> Vec<DVec3> {
-    let count = POINTS[usize::from(!plane)];
-    let golden = TAU * 0.618_033_988_749_895;
-    let place = |k: usize| {
-        let part = (k as f64 + 0.5) / count as f64;
-        let z = if plane { 0.0 } else { 1.0 - 2.0 * part };
-        let angle = if plane { TAU * part } else { golden * k as f64 };
-        let radius = (1.0 - z * z).sqrt();
-        DVec3::new(radius * angle.cos(), radius * angle.sin(), z)
-    };
-    (0..count).map(place).collect()
+/// Points in all directions, evenly: on a circle, or on a spiral around a sphere.
+struct SpherePoints {
+    units: Vec<DVec3>,
+    /// The others around each point, by their distances from it on the unit sphere.
+    around: Vec<Vec<(f64, usize)>>,
+}
+
+impl SpherePoints {
+    fn new(plane: bool) -> Self {
+        let count = POINTS[usize::from(!plane)];
+        let golden = TAU * 0.618_033_988_749_895;
+        let place = |k: usize| {
+            let part = (k as f64 + 0.5) / count as f64;
+            let z = if plane { 0.0 } else { 1.0 - 2.0 * part };
+            let angle = if plane { TAU * part } else { golden * k as f64 };
+            let radius = (1.0 - z * z).sqrt();
+            DVec3::new(radius * angle.cos(), radius * angle.sin(), z)
+        };
+        let units: Vec<DVec3> = (0..count).map(place).collect();
+        let around = |own: &DVec3| {
+            let mut around: Vec<(f64, usize)> =
+                units.iter().enumerate().map(|(k, unit)| (own.distance(*unit), k)).collect();
+            around.sort_by(|a, b| a.0.total_cmp(&b.0));
+            around
+        };
+        let around = units.iter().map(around).collect();
+        Self { units, around }
+    }
+
+    /// Part of the points on a sphere of that radius that are outside of a shape; `bound` has the sign of the
+    /// distance from it and is no larger, so that all points that are nearer than it are on the same side.
+    fn part(&self, radius: f64, bound: impl Fn(DVec3) -> f64) -> f64 {
+        let mut is_known = [false; POINTS[1]];
+        let mut outside = 0;
+        for (k, unit) in self.units.iter().enumerate() {
+            if is_known[k] {
+                continue;
+            }
+            let bound = bound(*unit);
+            let mut same = 1;
+            is_known[k] = true;
+            for &(_, other) in self.around[k].iter().take_while(|(way, _)| radius * way < bound.abs()) {
+                same += usize::from(!is_known[other]);
+                is_known[other] = true;
+            }
+            outside += if bound > 0.0 { same } else { 0 };
+        }
+        outside as f64 / self.units.len() as f64
+    }
 }
 
 #[cfg(test)]
@@ -91,14 +128,14 @@ mod tests {
     fn edge(
         angle: f64,
         spacing: f64,
-    ) -> SeenShape<impl Fn(DVec3) -> f64, impl Fn(DVec3) -> bool, impl Fn(DVec3) -> DVec3> {
+    ) -> SeenShape<impl Fn(DVec3) -> f64, impl Fn(DVec3) -> f64, impl Fn(DVec3) -> DVec3> {
         let normals = [DVec3::Y, DVec3::new(angle.sin(), -angle.cos(), 0.0)];
         let distance =
             move |at: DVec3| normals.map(|normal| normal.dot(at)).into_iter().fold(f64::MIN, f64::max);
         let gradient = move |at: DVec3| {
             if normals[0].dot(at) > normals[1].dot(at) { normals[0] } else { normals[1] }
         };
-        SeenShape { distance, is_outside: move |at| distance(at) > 0.0, gradient, spacing }
+        SeenShape { distance, bound: distance, gradient, spacing }
     }
 
     /// The particles of a wall of that angle.
@@ -127,7 +164,7 @@ mod tests {
 
     /// Whether any particle near the edge counts as one of it.
     fn is_seen(lattice: &str, degrees: f64, spacing: f64, plane: bool) -> bool {
-        let (angle, points) = (degrees.to_radians(), sphere(plane));
+        let (angle, points) = (degrees.to_radians(), SpherePoints::new(plane));
         let shape = edge(angle, spacing);
         // In space away from the ends of the edge.
         let is_near = |at: &DVec3| at.z.abs() < 0.25 && at.truncate().length() < 5.0 * spacing;
@@ -155,15 +192,30 @@ mod tests {
         }
     }
 
+    /// Points that are not looked at, because one beside them is far from the surface, count as they are.
+    #[test]
+    fn the_open_part_is_that_of_all_points() {
+        for plane in [true, false] {
+            let points = SpherePoints::new(plane);
+            for (x, y, z) in
+                [(0.1, 0.4, 0.2), (-0.5, 0.7, 0.0), (0.3, -0.2, 0.6), (1.5, 0.1, 0.1), (-3.0, -3.0, -3.0)]
+            {
+                // A corner, from which the distance is underestimated outside.
+                let bound = |unit: DVec3| (1.2 * unit - DVec3::new(x, y, z)).max_element();
+                let all = points.units.iter().filter(|unit| bound(**unit) > 0.0).count();
+                assert_eq!(points.part(1.2, bound), all as f64 / points.units.len() as f64, "{x} {y} {z}");
+            }
+        }
+    }
+
     /// Round walls have no edges.
     #[test]
     fn round_walls_count_as_edges_only_where_they_are_as_thin_as_the_support() {
         for (plane, thin, thick) in [(true, 1.5, 2.5), (false, 3.0, 5.0)] {
-            let points = sphere(plane);
+            let points = SpherePoints::new(plane);
             let is_seen = |radius: f64| {
                 let distance = |at: DVec3| at.length() - radius;
-                let is_outside = |at: DVec3| distance(at) > 0.0;
-                let ball = SeenShape { distance, is_outside, gradient: |at| at, spacing: 1.0 };
+                let ball = SeenShape { distance, bound: distance, gradient: |at| at, spacing: 1.0 };
                 let part = ball.open_part((radius - 0.5) * DVec3::X, &points);
                 part.is_some_and(|part| part > OUTSIDE[usize::from(!plane)])
             };
