@@ -1,8 +1,8 @@
 //! Rows of particles that lie on the face between a fluid and what bounds it.
 //!
-//! The particles of a lattice stand for cells, whose faces are those of the shape as a rule. Where a face runs
-//! through the centres of cells, as an oblique one may, the whole row on it belongs to one of the two, and the
-//! flow sees the face half a row off: a channel of ten particles has a flux that is 17 % too large.
+//! The particles of a lattice stand for cells, whose faces are those of the shape as a rule. Where a face
+//! runs through the centres of cells, as an oblique one may, the whole row on it belongs to one of the two,
+//! and the flow sees the face half a row off: a channel of ten particles has a flux that is 17 % too large.
 
 use glam::DVec3;
 use rayon::prelude::*;
