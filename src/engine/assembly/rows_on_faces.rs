@@ -34,8 +34,9 @@ pub(super) fn warn(sim: &mut SimBuilder<'_>) {
         sim.bodies().iter().filter_map(|body| Some((body, region(body)?))).collect();
     let mut texts = Vec::new();
     for (body, own) in &known {
+        let near = near_face(body, own.as_ref());
         let beside = known.iter().filter(|(other, _)| is_fluid(body) != is_fluid(other));
-        let on_face = beside.map(|(other, region)| (other, rows(body, own.as_ref(), region.as_ref())));
+        let on_face = beside.map(|(other, region)| (other, rows(&near, body.spacing, region.as_ref())));
         let found =
             on_face.filter(|(_, [on, beside])| *on >= MIN_COUNT && *on as f64 > MIN_PART * *beside as f64);
         texts.extend(found.map(|(other, [on, _])| {
@@ -48,15 +49,24 @@ pub(super) fn warn(sim: &mut SimBuilder<'_>) {
     texts.into_iter().for_each(|text| sim.warn(text));
 }
 
-/// Numbers of the particles on the face of a body towards another region, and of those beside it.
-fn rows(body: &BodyPlan, own: &dyn Region, other: &dyn Region) -> [usize; 2] {
-    let is_before = |x: DVec3, within: f64| other.distance(x) < within;
+/// Places of the particles beside the faces of a body, and whether each is on one.
+fn near_face(body: &BodyPlan, own: &dyn Region) -> Vec<(DVec3, bool)> {
     let of = |x: DVec3| {
         let depth = own.distance(x).abs() / body.spacing;
-        let is_beside = depth < BESIDE && is_before(x, BESIDE * body.spacing);
-        [usize::from(is_beside && depth < ON_FACE), usize::from(is_beside)]
+        (depth < BESIDE).then_some((x, depth < ON_FACE))
     };
-    let sums = body.sites.par_iter().map(|site| of(site.position));
+    body.sites.par_iter().filter_map(|site| of(site.position)).collect()
+}
+
+/// Numbers of those on a face towards another region, and of all beside such a face.
+fn rows(near: &[(DVec3, bool)], spacing: f64, other: &dyn Region) -> [usize; 2] {
+    let within = BESIDE * spacing;
+    // First, as a flow may surround many bodies.
+    let bounds = other.bounds().grown(within);
+    let is_before =
+        |x: DVec3| x.cmpge(bounds.min).all() && x.cmple(bounds.max).all() && other.distance(x) < within;
+    let before = near.par_iter().filter(|(x, _)| is_before(*x));
+    let sums = before.map(|(_, is_on)| [usize::from(*is_on), 1]);
     sums.reduce(|| [0; 2], |[a, b], [c, d]| [a + c, b + d])
 }
 
