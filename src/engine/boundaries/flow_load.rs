@@ -10,10 +10,17 @@ use super::part::Part;
 use crate::formulations::fluid::{FLOW_LOADS, FlowCloud};
 use crate::plugin::{BodyKind, SimBuilder};
 use crate::schedule::{Mode, Run, Stage, Step, StepError, System};
-use crate::world::{Mass, ParticleId, PhaseId, ReferenceVolume};
+use crate::world::{Mass, ParticleId, PhaseId};
 
 /// Adds the system that passes a load on to fluids with boundaries.
-pub(super) fn add(label: &str, law: &Arc<dyn LoadLaw>, parts: &[Part], sim: &mut SimBuilder<'_>) {
+/// `declare` adds the columns that the law reads.
+pub(super) fn add(
+    label: &str,
+    law: &Arc<dyn LoadLaw>,
+    parts: &[Part],
+    sim: &mut SimBuilder<'_>,
+    declare: impl FnOnce(System) -> System,
+) {
     let is_fluid = |part: &Part| sim.body(part.body).kind == BodyKind::Fluid;
     let parts: Vec<(usize, Part)> =
         parts.iter().cloned().enumerate().filter(|(_, part)| is_fluid(part)).collect();
@@ -27,7 +34,7 @@ pub(super) fn add(label: &str, law: &Arc<dyn LoadLaw>, parts: &[Part], sim: &mut
     let load = FlowLoad { law: Arc::clone(law), parts, accelerations };
     let system = System::new(Stage::Gradients, format!("{label}_of_flow"), load);
     let system = system.on_phases(phases).touches_packed(FLOW_LOADS, Mode::Adds);
-    sim.add_system(system.reads::<Mass>().reads::<ReferenceVolume>().reads::<ParticleId>());
+    sim.add_system(declare(system.reads::<Mass>().reads::<ParticleId>()));
 }
 
 struct FlowLoad {

@@ -56,13 +56,13 @@ pub(super) fn apply(
     law: impl LoadLaw,
     selection: &Selection,
     sim: &mut SimBuilder<'_>,
-    declare: impl FnOnce(System) -> System,
+    declare: impl Fn(System) -> System,
 ) {
     let parts = parts_of(selection, sim);
     let phases = phases_of(selection, sim);
     let forces = vec![Vec::new(); parts.len()];
     let law: Arc<dyn LoadLaw> = Arc::new(law);
-    flow_load::add(label, &law, &parts, sim);
+    flow_load::add(label, &law, &parts, sim, &declare);
     let kinds: Vec<BodyKind> = parts.iter().map(|part| sim.body(part.body).kind).collect();
     let turns = kinds.contains(&BodyKind::Rigid);
     let load = Load { label, law, parts, kinds, forces, next: Vec::new() };

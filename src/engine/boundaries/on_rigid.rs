@@ -100,10 +100,10 @@ fn arm(select: &Select, particle: DVec3, body: &BodyPlan, region: &dyn Region) -
     if region.distance(point) <= ON * body.spacing { point - particle } else { DVec3::ZERO }
 }
 
-/// Adds what forces do beside the particles of a rigid body: their torques about these. `forces` are those at
-/// the ends of the step, N, on the particles of a part. Returns their power, W: of the first at the places
-/// that the body leaves in this step, of the second at those that it reaches, which is what the two kicks
-/// spend. With the places of one end, it would be off by half the angle of a step.
+/// Adds the torques that forces have about the particles of a rigid body, beside which they act. The forces
+/// are those at both ends of the step, N, on the particles of a part. Returns the power of all of them, W: of
+/// the first at the places that the body leaves in this step, of the second at those that it reaches, which
+/// is what the two kicks spend. With the places of one end, it would be off by half the angle of a step.
 pub(super) fn push_beside(part: &Part, arms: &[DVec3], [last, next]: [&[DVec3]; 2], step: &Step<'_>) -> f64 {
     let mut bodies = step.resources.get_mut::<RigidBodies>();
     let Some(body) = bodies.iter_mut().find(|body| body.id == part.body && !body.state.gone) else {

@@ -10,7 +10,7 @@ use crate::neighbors::{Cloud, NeighborError, NeighborList, Periodic};
 
 /// Distance of two particles below which they are beside each other, over the spacing: the diagonal of a
 /// lattice, and less than two particles on both sides of a single layer of others.
-const BESIDE: f64 = 1.6;
+pub const BESIDE: f64 = 1.6;
 
 /// The periodic axes along which one of the particles at `positions` is connected to its own image by others.
 ///

@@ -3,11 +3,8 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::endless::BESIDE;
 use crate::neighbors::{Cloud, NeighborError, NeighborList, Periodic};
-
-/// Distance of two particles below which the interface of two liquids is half-way between them, over the
-/// spacing: the diagonal of a lattice.
-const ADJACENT: f64 = 1.6;
 
 /// The particles of all fluids.
 pub struct AllFluids {
@@ -78,7 +75,7 @@ impl AllFluids {
             (count > 0).then(|| sum / f64::from(count))
         };
         mean(&|j| self.densities[j] == self.densities[i])
-            .or_else(|| mean(&|j| x_ji(j).length() < ADJACENT * self.spacing))
+            .or_else(|| mean(&|j| x_ji(j).length() < BESIDE * self.spacing))
             .or_else(|| if far { mean(&|_| true) } else { None })
     }
 }

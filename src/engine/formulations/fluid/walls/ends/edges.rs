@@ -19,15 +19,15 @@ const OUTSIDE: [f64; 2] = [0.45, 0.36];
 /// Depth of the particles that are looked at, over the spacing.
 const DEPTH: f64 = 1.0;
 
-/// Adds the rows, in the cloud, of the particles of a wall at convex edges; `reference` are the places of its
-/// particles in the scene.
+/// Adds the rows, in the cloud, of the particles of a wall at convex edges, which `points` around them tell;
+/// `reference` are the places of its particles in the scene.
 pub fn add_edges(
     shape: &BoundaryShape,
     cloud: &FlowCloud,
+    points: &SpherePoints,
     reference: &[ReferencePosition],
     out: &mut Vec<usize>,
 ) {
-    let points = SpherePoints::new(cloud.plane);
     let limit = OUTSIDE[usize::from(!cloud.plane)];
     let seen = SeenShape {
         distance: |at| shape.distance(cloud, at),
@@ -35,7 +35,7 @@ pub fn add_edges(
         gradient: |at| shape.gradient(cloud, at),
         spacing: shape.spacing,
     };
-    let is_edge = |at: DVec3| seen.open_part(at, &points).is_some_and(|part| part > limit);
+    let is_edge = |at: DVec3| seen.open_part(at, points).is_some_and(|part| part > limit);
     let at_edges = reference.par_iter().enumerate().filter(|(_, place)| is_edge(place.0));
     out.par_extend(at_edges.map(|(k, _)| shape.group.cloud.start + k));
 }
@@ -65,14 +65,15 @@ impl<D: Fn(DVec3) -> f64, B: Fn(DVec3) -> f64, G: Fn(DVec3) -> DVec3> SeenShape<
 }
 
 /// Points in all directions, evenly: on a circle, or on a spiral around a sphere.
-struct SpherePoints {
+pub struct SpherePoints {
     units: Vec<DVec3>,
     /// The others around each point, by their distances from it on the unit sphere.
     around: Vec<Vec<(f64, usize)>>,
 }
 
 impl SpherePoints {
-    fn new(plane: bool) -> Self {
+    /// Those of the plane, or of space.
+    pub fn new(plane: bool) -> Self {
         let count = POINTS[usize::from(!plane)];
         let golden = TAU * 0.618_033_988_749_895;
         let place = |k: usize| {

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::edges::add_edges;
+use super::edges::{SpherePoints, add_edges};
 use super::faces::FacesBefore;
 use super::forces::WITHIN;
 use crate::formulations::fluid::cloud::{FlowCloud, Group, WallEnd};
@@ -52,12 +52,12 @@ impl WallEnds {
         if self.edges.is_some() {
             return Ok(());
         }
-        let mut edges = Vec::new();
+        let (mut edges, points) = (Vec::new(), SpherePoints::new(cloud.plane));
         for shape in &mut self.shapes {
             shape.reach = cloud.kernel.support;
             let view = step.world.phase(shape.group.phase);
             let reference = &view.read_near::<ReferencePosition>()?[shape.group.rows.clone()];
-            add_edges(shape, cloud, reference, &mut edges);
+            add_edges(shape, cloud, &points, reference, &mut edges);
         }
         if !edges.is_empty() {
             self.faces.reserve(cloud.fluid);
