@@ -103,6 +103,7 @@ impl PairTerm for ViscousTerm {
     type ReadJ = ();
 
     const READS_KERNEL: bool = false;
+    const HEATS: bool = true;
 
     #[inline(always)]
     fn pair<A: Arithmetic>(&self, pair: &Pair<A>, (): (), (): (), rates: &mut Rates<A>) {
@@ -118,6 +119,8 @@ impl PairTerm for ViscousTerm {
         let pressure = mu * linear - self.beta * push * push;
         let force = slope * pressure * (pair.volume_i * self.density);
         rates.force = pair.x_ij.mul_add(force, rates.force);
+        // Half of -f_ij . v_ji: mu has the sign of the approach.
+        rates.heat += 0.5 * force * approach;
         // The force per mass and speed of approach: d(f/m)/d(v_ij) along the bond.
         let damping = slope * (linear - 2.0 * self.beta * push) * (square * per_length);
         rates.damping += if self.parting { damping } else { approach.if_below(0.0, damping) };

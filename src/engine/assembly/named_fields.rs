@@ -4,7 +4,8 @@ use super::spawn::standard_columns;
 use crate::fields::{Field, named};
 use crate::plugin::Registry;
 use crate::world::{
-    ColumnSet, Damage, EquivalentStress, InternalEnergy, PlasticStrain, PlasticWork, Temperature, YieldStress,
+    ColumnSet, Damage, EquivalentStress, InternalEnergy, PlasticStrain, PlasticWork, Temperature,
+    ViscousHeat, YieldStress,
 };
 use crate::{formulations, solids};
 
@@ -16,7 +17,7 @@ pub fn fields(registry: &Registry) -> Vec<Field> {
     registry.formulations().for_each(|entry| (entry.columns)(&mut columns));
     // Those of materials that flow, heat and fail.
     columns.add::<PlasticStrain>().add::<EquivalentStress>().add::<YieldStress>().add::<PlasticWork>();
-    columns.add::<InternalEnergy>().add::<Temperature>().add::<Damage>();
+    columns.add::<InternalEnergy>().add::<ViscousHeat>().add::<Temperature>().add::<Damage>();
     let mut fields = named(&columns);
     fields.extend(with_neighbours());
     fields.sort_by(|one, other| one.name().cmp(other.name()));

@@ -108,6 +108,12 @@ impl PressureLaw {
         }
     }
 
+    /// Whether the internal energy is integrated along the path.
+    #[inline(always)]
+    pub fn keeps_energy(&self) -> bool {
+        matches!(self, Self::Shock { .. } | Self::Polynomial { .. })
+    }
+
     /// Pressure without its part gamma E, Pa, at the volume ratio J. Where the Hugoniot has no volume so
     /// small (1 - J >= 1/slope) it is infinite.
     #[inline(always)]

@@ -59,4 +59,9 @@ impl Heating {
     pub fn rise(&self, density: f64) -> f64 {
         self.specific_heat.map_or(0.0, |specific_heat| self.taylor_quinney / (density * specific_heat))
     }
+
+    /// The same for each joule of heat.
+    pub fn rise_by_heat(&self, density: f64) -> f64 {
+        self.specific_heat.map_or(0.0, |specific_heat| 1.0 / (density * specific_heat))
+    }
 }

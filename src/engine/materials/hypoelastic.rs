@@ -5,7 +5,7 @@ use glam::DMat3;
 use super::elastic_constants::ElasticConstants;
 use super::elastic_parameters::elastic_parameters;
 use super::eos::{PressureLaw, SolidEos};
-use super::eos_state::PressureRows;
+use super::eos_state::{PressureRows, StepHeat};
 use super::error::ParameterError;
 use super::hardening::Hardening;
 use super::heat_state::TemperatureRows;
@@ -15,6 +15,7 @@ use super::jaumann::{HypoelasticJ2, HypoelasticState, velocity_gradient_step};
 use super::law::{Material, MaterialModel, SolidLaw, StressRows};
 use super::state::StateRows;
 use super::stretches::Stretches;
+use super::viscous_heat::ViscousHeatRows;
 use crate::parallel::{FourLanes, HotLoop, run_hot};
 use crate::world::{ColumnSet, DeviatoricStress, PlasticStrain, ReachedDeformation};
 
@@ -46,7 +47,9 @@ impl MaterialModel for Hypoelastic {
         let rise = self.heating.map_or(0.0, |heating| heating.rise(self.density));
         let shape = HypoelasticJ2 { shear: elastic.shear, hardening: self.hardening, rise };
         let temperature = self.heating.map(|heating| heating.temperature);
-        Ok(Material::solid(self.density, HypoelasticLaw { elastic, shape, pressure, temperature }))
+        let rise_by_heat = self.heating.map_or(0.0, |heating| heating.rise_by_heat(self.density));
+        let law = HypoelasticLaw { elastic, shape, pressure, temperature, rise_by_heat };
+        Ok(Material::solid(self.density, law))
     }
 }
 
@@ -58,6 +61,15 @@ struct HypoelasticLaw {
     pressure: PressureLaw,
     /// Temperature at the start, K, if it plays a part.
     temperature: Option<f64>,
+    /// Rise of the temperature for each J/m3 of heat, K m3/J; zero without specific heat.
+    rise_by_heat: f64,
+}
+
+impl HypoelasticLaw {
+    /// Whether the heat of pair terms changes anything.
+    fn reads_heat(&self) -> bool {
+        self.rise_by_heat > 0.0 || self.pressure.keeps_energy()
+    }
 }
 
 impl SolidLaw for HypoelasticLaw {
@@ -90,6 +102,7 @@ impl SolidLaw for HypoelasticLaw {
         columns.add::<DeviatoricStress>().add::<ReachedDeformation>().add::<PlasticStrain>();
         TemperatureRows::declare(self.temperature, columns);
         PressureRows::declare(&self.pressure, columns);
+        ViscousHeatRows::declare(self.reads_heat(), columns);
     }
 
     fn start(&self, mut state: StateRows<'_>) {
@@ -120,15 +133,17 @@ impl HotLoop for HypoelasticLoop<'_, '_> {
         let strain = state.take::<PlasticStrain>();
         let mut temperature = TemperatureRows::take(law.temperature, &mut state);
         let mut pressures = PressureRows::take(&law.pressure, &mut state);
+        let heats = ViscousHeatRows::take(law.reads_heat(), &mut state);
         rows.modulus.fill(law.elastic.young);
         let moves = rows.dt > 0.0;
         for k in 0..rows.deformation.len() {
             let f = &rows.deformation[k];
             let volume = Volume::of(f);
+            let viscous = heats.heat(k, rows.dt);
             let mut now = HypoelasticState {
                 deviator: deviator[k].0,
                 plastic_strain: strain[k].0,
-                temperature: temperature.get(k),
+                temperature: temperature.get(k) + law.rise_by_heat * viscous,
             };
             let change = velocity_gradient_step(&reached[k].0, f);
             reached[k].0 = *f;
@@ -142,7 +157,8 @@ impl HotLoop for HypoelasticLoop<'_, '_> {
                 now.deviator = law.shape.elastic(&now.deviator, &change, 1.0);
             }
             deviator[k].0 = now.deviator;
-            let (pressure, stored) = pressures.advance(k, volume.ratio, rows.plastic_work[k], rows.dt);
+            let heat = StepHeat { plastic_work: rows.plastic_work[k], viscous };
+            let (pressure, stored) = pressures.advance(k, volume.ratio, heat, rows.dt);
             let tau = (now.deviator.add_diagonal(-pressure)) * volume.ratio;
             rows.stress[k] = first_piola(&tau, &volume.cofactor, volume.ratio);
             let square = now.deviator.double_dot(&now.deviator);

@@ -15,7 +15,7 @@ use glam::DMat3;
 use super::elastic_constants::ElasticConstants;
 use super::elastic_parameters::elastic_parameters;
 use super::eos::{PressureLaw, SolidEos};
-use super::eos_state::PressureRows;
+use super::eos_state::{PressureRows, StepHeat};
 use super::error::ParameterError;
 use super::hardening::Hardening;
 use super::heat_state::TemperatureRows;
@@ -24,6 +24,7 @@ use super::law::{Material, MaterialModel, SolidLaw, StressRows};
 use super::return_mapping::Trial;
 use super::state::StateRows;
 use super::stretches::Stretches;
+use super::viscous_heat::ViscousHeatRows;
 use crate::linalg::Sym3;
 use crate::parallel::{FourLanes, HotLoop, run_hot};
 use crate::world::{ColumnSet, EquivalentStress, InversePlasticCauchyGreen, PlasticStrain, YieldStress};
@@ -89,7 +90,8 @@ pub(super) fn plastic(
     let rise = heating.map_or(0.0, |heating| heating.rise(density));
     let temperature = heating.map(|heating| heating.temperature);
     let specific_heat = heating.and_then(|heating| heating.specific_heat);
-    let law = PlasticLaw { elastic, hardening, pressure, rise, temperature, specific_heat };
+    let rise_by_heat = heating.map_or(0.0, |heating| heating.rise_by_heat(density));
+    let law = PlasticLaw { elastic, hardening, pressure, rise, rise_by_heat, temperature, specific_heat };
     Ok(Material::solid(density, law))
 }
 
@@ -101,10 +103,19 @@ struct PlasticLaw {
     pressure: PressureLaw,
     /// Rise of the temperature for each J/m3 of plastic work, K m3/J.
     rise: f64,
+    /// The same for each J/m3 of heat.
+    rise_by_heat: f64,
     /// Temperature at the start, K, if it plays a part.
     temperature: Option<f64>,
     /// Specific heat, J/(kg K), if the metal heats up.
     specific_heat: Option<f64>,
+}
+
+impl PlasticLaw {
+    /// Whether the heat of pair terms changes anything.
+    fn reads_heat(&self) -> bool {
+        self.specific_heat.is_some() || self.pressure.keeps_energy()
+    }
 }
 
 impl SolidLaw for PlasticLaw {
@@ -141,6 +152,7 @@ impl SolidLaw for PlasticLaw {
         columns.add::<EquivalentStress>().add::<YieldStress>();
         TemperatureRows::declare(self.temperature, columns);
         PressureRows::declare(&self.pressure, columns);
+        ViscousHeatRows::declare(self.reads_heat(), columns);
     }
 
     fn start(&self, mut state: StateRows<'_>) {
@@ -174,6 +186,7 @@ impl HotLoop for PlasticLoop<'_, '_> {
         let yield_stress = state.take::<YieldStress>();
         let mut temperature = TemperatureRows::take(law.temperature, &mut state);
         let mut pressures = PressureRows::take(&law.pressure, &mut state);
+        let heats = ViscousHeatRows::take(law.reads_heat(), &mut state);
         let shear = law.elastic.shear;
         rows.modulus.fill(law.elastic.young);
         for k in 0..rows.deformation.len() {
@@ -184,6 +197,12 @@ impl HotLoop for PlasticLoop<'_, '_> {
             let square = e.double_dot(&e);
             let mut q = (6.0 * square).sqrt() * shear;
             let mut left = 1.0;
+            let viscous = heats.heat(k, rows.dt);
+            temperature.set(k, temperature.get(k) + law.rise_by_heat * viscous);
+            if law.hardening.needs_temperature() {
+                // Contact, conduction or pair terms may have heated the particle since it last flowed.
+                yield_stress[k].0 = law.hardening.static_stress(strain[k].0, temperature.get(k));
+            }
             // NaN is not above the yield stress: it goes on into the stress, and the watchdog stops.
             if q > yield_stress[k].0 && rows.dt > 0.0 {
                 let hot = temperature.get(k);
@@ -202,7 +221,8 @@ impl HotLoop for PlasticLoop<'_, '_> {
             }
             // Also where bonds are cut: what is beyond yield after that flows back from there.
             equivalent[k].0 = q;
-            let (pressure, stored) = pressures.advance(k, volume.ratio, rows.plastic_work[k], rows.dt);
+            let heat = StepHeat { plastic_work: rows.plastic_work[k], viscous };
+            let (pressure, stored) = pressures.advance(k, volume.ratio, heat, rows.dt);
             let tau = (e * (2.0 * shear)).add_diagonal(-volume.ratio * pressure);
             rows.stress[k] = first_piola(&tau, &volume.cofactor, volume.ratio);
             rows.energy[k] = shear * square * left * left + stored;

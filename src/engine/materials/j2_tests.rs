@@ -5,7 +5,7 @@ use proptest::prelude::*;
 
 use super::specimen::MaterialSpecimen;
 use super::{Hardening, Heating, J2, JohnsonCookFlow, Material, MaterialModel, Trial};
-use crate::world::{InversePlasticCauchyGreen, PlasticStrain, Temperature, YieldStress};
+use crate::world::{InversePlasticCauchyGreen, PlasticStrain, Temperature, ViscousPower, YieldStress};
 
 const BULK: f64 = 69.0e9;
 const SHEAR: f64 = 26.5e9;
@@ -211,4 +211,33 @@ fn a_steep_beginning_is_found() {
             );
         }
     }
+}
+
+#[test]
+fn a_metal_heated_from_outside_yields_at_its_flow_stress_when_hot() {
+    // Half way to melting, without plastic strain, the flow stress is a (1 - 0.5^m), at the reference rate.
+    let mut specimen =
+        MaterialSpecimen::new(metal(Hardening::JohnsonCook(JohnsonCookFlow { c: 0.0, ..flow() })));
+    specimen.set(Temperature(0.5 * (292.0 + 925.0)));
+    let strength = YIELD * (1.0 - 0.5_f64.powf(1.419));
+    let along =
+        |share: f64| DMat3::from_diagonal(DVec3::new((share * strength / (2.0 * SHEAR)).exp(), 1.0, 1.0));
+    specimen.step(along(0.999), 1e-3);
+    close(specimen.get::<PlasticStrain>().0, 0.0, 0.0);
+    close(specimen.get::<YieldStress>().0, strength, 1e-9 * strength);
+    specimen.step(along(1.001), 1e-3);
+    assert!(specimen.get::<PlasticStrain>().0 > 0.0);
+}
+
+#[test]
+fn the_heat_of_pair_terms_warms_and_softens() {
+    let mut specimen = MaterialSpecimen::new(metal(Hardening::JohnsonCook(flow())));
+    specimen.set(ViscousPower(1e11));
+    for _ in 0..10 {
+        specimen.step(DMat3::IDENTITY, 1e-4);
+    }
+    let rise = 1e8 / (2800.0 * 885.0);
+    close(specimen.get::<Temperature>().0, 292.0 + rise, 1e-9);
+    let soft = YIELD * (1.0 - (rise / (925.0 - 292.0)).powf(1.419));
+    close(specimen.get::<YieldStress>().0, soft, 1e-9 * soft);
 }

@@ -32,6 +32,7 @@ mod stretches;
 #[cfg(test)]
 mod tests;
 mod value_and_slope;
+mod viscous_heat;
 
 pub use decoupled_neo_hookean::DecoupledNeoHookean;
 pub use elastic_constants::ElasticConstants;

@@ -58,6 +58,11 @@ impl MaterialSpecimen {
         self.state().take::<T>()[0]
     }
 
+    /// Sets the value of a state column.
+    pub fn set<T: Column>(&mut self, value: T) {
+        self.state().take::<T>()[0] = value;
+    }
+
     /// Deforms the particle to `deformation` within `dt` seconds.
     pub fn step(&mut self, deformation: DMat3, dt: f64) {
         let (mut stress, mut energy, mut modulus) = ([DMat3::ZERO], [0.0], [0.0]);

@@ -6,7 +6,7 @@ use crate::parallel::Split;
 use crate::world::{Column, ColumnInfo, ColumnSet};
 
 /// Maximum number of state columns that one law may have.
-pub const MAX_STATE: usize = 16;
+pub const MAX_STATE: usize = 24;
 
 /// The state columns of a law, in the order of their names.
 #[derive(Clone, Debug, Default)]

@@ -130,6 +130,8 @@ impl TermSums {
         Rates {
             force: Vector::new(a, self.force),
             density: Number::new(a, self.density),
+            // Blocks are of fluids, which have no temperature.
+            heat: Number::zero(a),
             damping: Number::new(a, self.damping),
             stiffness: Number::new(a, self.stiffness),
         }

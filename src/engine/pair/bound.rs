@@ -9,7 +9,7 @@ use super::read::ReadSet;
 use super::term::{PairReads, PairTerm, Rates};
 use crate::parallel::{BlockLoop, EightLanes, FourLanes, HotLoop, run_blocks_on, run_hot_on};
 use crate::schedule::{Access, Mode};
-use crate::world::{DensityRate, Force, MissingColumn, PhaseView};
+use crate::world::{DensityRate, Force, MissingColumn, PhaseView, ViscousPower};
 
 /// A term that is bound to its columns.
 pub(super) trait RowTerm: Sync {
@@ -33,6 +33,8 @@ pub(super) struct RowsOut<'a> {
     pub total: &'a mut [Force],
     /// Density rates of all terms; empty where the phase has none.
     pub density: &'a mut [DensityRate],
+    /// Heat of all terms, W; empty where the phase has none.
+    pub heat: &'a mut [ViscousPower],
     /// Rates that limit the step.
     pub fastest: &'a mut [RateBounds; MAX_ROWS],
 }
@@ -118,7 +120,7 @@ impl<T: PairTerm> BoundRows<'_, '_, T> {
     #[inline(always)]
     fn add<A: FourLanes, const PLAIN: bool, const ALIKE: bool>(self, a: A) {
         let Bound { term, of_i, of_j } = *self.bound;
-        let RowsOut { by_term, term: own, terms, total, density, fastest } = self.out;
+        let RowsOut { by_term, term: own, terms, total, density, heat, fastest } = self.out;
         for r in 0..self.batch.rows() {
             let row = self.batch.row(r);
             let i = T::ReadI::four(a, of_i, [(self.first + r) as u32; 4], None);
@@ -136,6 +138,11 @@ impl<T: PairTerm> BoundRows<'_, '_, T> {
             {
                 density.0 += rates.density;
             }
+            if T::HEATS
+                && let Some(heat) = heat.get_mut(r)
+            {
+                heat.0 += rates.heat;
+            }
             fastest[r].damping += rates.damping;
             fastest[r].stiffness += rates.stiffness;
         }
@@ -152,7 +159,7 @@ pub(super) struct Chain<'c> {
 impl Chain<'_> {
     /// Runs every term, the last of which is `out.term`, on the batch.
     pub fn rows(&self, first: usize, batch: &PairBatch, plane: bool, out: RowsOut<'_>) {
-        let RowsOut { by_term, term, terms, total, density, fastest } = out;
+        let RowsOut { by_term, term, terms, total, density, heat, fastest } = out;
         if let Some(before) = self.before {
             let out = RowsOut {
                 by_term: &mut *by_term,
@@ -160,11 +167,12 @@ impl Chain<'_> {
                 terms,
                 total: &mut *total,
                 density: &mut *density,
+                heat: &mut *heat,
                 fastest: &mut *fastest,
             };
             before.rows(first, batch, plane, out);
         }
-        self.term.rows(first, batch, plane, RowsOut { by_term, term, terms, total, density, fastest });
+        self.term.rows(first, batch, plane, RowsOut { by_term, term, terms, total, density, heat, fastest });
     }
 
     /// Runs every term on some neighbours of a block; `sums` has one entry for each.

@@ -16,7 +16,7 @@ use crate::parallel::{BlockSum, Split};
 use crate::plugin::{BodyKind, ForBodies, SetupError, SimBuilder};
 use crate::scene::Dimension;
 use crate::schedule::{Access, Mode, Shared, Step, StepError};
-use crate::world::{BodyId, BodySet, Column, DensityRate, Force, PhaseId};
+use crate::world::{BodyId, BodySet, Column, DensityRate, Force, PhaseId, ReferenceVolume, ViscousPower};
 
 /// The terms of all bodies of a phase.
 pub(crate) struct PhaseTerms {
@@ -89,11 +89,11 @@ impl PhaseTerms {
         }))
     }
 
-    /// Columns that the terms read, and the density rates that they write.
+    /// Columns that the terms read, and the rates of density and heat that they write.
     pub fn access(&self, sim: &SimBuilder<'_>, phase: PhaseId) -> Vec<Access> {
-        let rates = sim.columns(phase).get(DensityRate::NAME).is_some();
-        let rates = rates.then_some(Access { column: DensityRate::NAME, mode: Mode::Writes });
-        let mut access: Vec<Access> = rates.into_iter().collect();
+        let written = [DensityRate::NAME, ViscousPower::NAME].into_iter();
+        let written = written.filter(|name| sim.columns(phase).get(name).is_some());
+        let mut access: Vec<Access> = written.map(|column| Access { column, mode: Mode::Writes }).collect();
         for read in self.terms.iter().flat_map(|term| term.term.access()) {
             if !access.contains(&read) {
                 access.push(read);
@@ -138,6 +138,11 @@ impl PhaseTerms {
         let (view, rows) = step.world.body_view(id);
         let mut density =
             if view.has::<DensityRate>() { Some(view.write_own::<DensityRate>()?) } else { None };
+        let (mut heat, mut volume) = (None, None);
+        if view.has::<ViscousPower>() {
+            heat = Some(view.write_own::<ViscousPower>()?);
+            volume = Some(view.read_own::<ReferenceVolume>()?);
+        }
         forces.resize(rows.len() * terms.len(), DVec3::ZERO);
         let plane = step.world.dimension() == Dimension::Two;
         let (sums, reads) = (&mut self.sums, self.reads);
@@ -147,6 +152,8 @@ impl PhaseTerms {
                 by_term: forces,
                 terms: terms.len(),
                 density: density.as_mut().map_or(&mut [], |density| &mut density[rows.clone()]),
+                heat: heat.as_mut().map_or(&mut [], |heat| &mut heat[rows.clone()]),
+                volume: volume.as_ref().map_or(&[], |volume| &volume[rows.clone()]),
             };
             fastest = run(&BoundTerms { chain, reads, plane }, written, sums);
         })?;
@@ -170,6 +177,8 @@ impl BoundTerms<'_> {
         let rows = batch.rows();
         let density = if block.density.is_empty() { &mut [] } else { &mut block.density[k..k + rows] };
         density.fill(DensityRate(0.0));
+        let heat = if block.heat.is_empty() { &mut [] } else { &mut block.heat[k..k + rows] };
+        heat.fill(ViscousPower(0.0));
         let mut fastest = [RateBounds::default(); MAX_ROWS];
         let out = RowsOut {
             by_term: &mut block.by_term[k * block.terms..(k + rows) * block.terms],
@@ -177,9 +186,13 @@ impl BoundTerms<'_> {
             terms: block.terms,
             total: &mut block.total[k..k + rows],
             density,
+            heat: &mut *heat,
             fastest: &mut fastest,
         };
         self.chain.rows(first, batch, self.plane, out);
+        for (heat, volume) in heat.iter_mut().zip(block.volume.iter().skip(k)) {
+            heat.0 /= volume.0;
+        }
         let mut largest = RateBounds::default();
         fastest.iter().for_each(|of_row| largest.add(of_row));
         largest
@@ -204,6 +217,10 @@ pub(crate) struct TermRows<'a> {
     terms: usize,
     /// Density rates; empty where the phase has none.
     density: &'a mut [DensityRate],
+    /// Power of heat; empty where the phase has none.
+    heat: &'a mut [ViscousPower],
+    /// Reference volumes V_0, m3.
+    volume: &'a [ReferenceVolume],
 }
 
 impl<'a> TermRows<'a> {
@@ -230,7 +247,7 @@ impl<'a> TermRows<'a> {
 
     /// Rows of bodies without terms.
     pub fn without_terms(total: &'a mut [Force]) -> Self {
-        Self { total, by_term: &mut [], terms: 0, density: &mut [] }
+        Self { total, by_term: &mut [], terms: 0, density: &mut [], heat: &mut [], volume: &[] }
     }
 }
 
@@ -244,9 +261,16 @@ impl Split for TermRows<'_> {
         let (total, total_rest) = self.total.split_at_mut(at);
         let (by_term, by_term_rest) = self.by_term.split_at_mut(at * terms);
         let (density, density_rest) = self.density.split_at_mut(at.min(self.density.len()));
-        (
-            Self { total, by_term, terms, density },
-            Self { total: total_rest, by_term: by_term_rest, terms, density: density_rest },
-        )
+        let (heat, heat_rest) = self.heat.split_at_mut(at.min(self.heat.len()));
+        let (volume, volume_rest) = self.volume.split_at(at.min(self.volume.len()));
+        let rest = Self {
+            total: total_rest,
+            by_term: by_term_rest,
+            terms,
+            density: density_rest,
+            heat: heat_rest,
+            volume: volume_rest,
+        };
+        (Self { total, by_term, terms, density, heat, volume }, rest)
     }
 }

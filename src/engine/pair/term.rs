@@ -101,6 +101,9 @@ pub struct Rates<A: Arithmetic> {
     /// Rate of change of the density of i, kg/(m3 s), in fluids; of a term with
     /// [`PairTerm::CHANGES_DENSITY`].
     pub density: Number<A>,
+    /// Heat of i, W, of a term with [`PairTerm::HEATS`]: half of what the pair dissipates, so that i and j
+    /// have all of it.
+    pub heat: Number<A>,
     /// Rate at which the term damps the velocity of i against fixed neighbours, 1/s: limits the time step.
     pub damping: Number<A>,
     /// Stiffness per mass that the term gives i against fixed neighbours, 1/s2: limits the time step.
@@ -112,6 +115,7 @@ pub struct Rates<A: Arithmetic> {
 pub(super) struct RowRates {
     pub force: DVec3,
     pub density: f64,
+    pub heat: f64,
     pub damping: f64,
     pub stiffness: f64,
 }
@@ -120,7 +124,7 @@ impl<A: Arithmetic> Rates<A> {
     #[inline(always)]
     pub(super) fn zero(a: A) -> Self {
         let zero = Number::zero(a);
-        Self { force: Vector::zero(a), density: zero, damping: zero, stiffness: zero }
+        Self { force: Vector::zero(a), density: zero, heat: zero, damping: zero, stiffness: zero }
     }
 }
 
@@ -132,6 +136,7 @@ impl<A: FourLanes> Rates<A> {
         RowRates {
             force: sums.xyz(),
             density: sums.0[3],
+            heat: self.heat.sum(),
             damping: self.damping.sum(),
             stiffness: self.stiffness.sum(),
         }
@@ -156,6 +161,8 @@ pub trait PairTerm: Send + Sync + 'static {
     const NEEDS_REFERENCE: bool = false;
     /// Whether the term changes the density.
     const CHANGES_DENSITY: bool = false;
+    /// Whether what the term dissipates heats the particles of solids.
+    const HEATS: bool = false;
 
     /// Adds the contribution of j to the rates of i. Mark it `#[inline(always)]`: it is then compiled for the
     /// instruction path of the loop around it.

@@ -56,6 +56,10 @@ column! {
     pub struct InternalEnergy(f64) = "internal_energy", "E", "J/m^3";
     /// Plastic work since the start per reference volume.
     pub struct PlasticWork(f64) = "plastic_work", "w_p", "J/m^3";
+    /// Power per reference volume that pair terms turn into heat, such as that of an artificial viscosity.
+    pub struct ViscousPower(f64) = "viscous_power", "q", "W/m^3";
+    /// Heat of pair terms since the start per reference volume.
+    pub struct ViscousHeat(f64) = "viscous_heat", "w_q", "J/m^3";
     /// Volume ratio to which an equation of state has integrated its energy.
     pub struct ReachedVolumeRatio(f64) = "reached_volume_ratio", "J", "1";
     /// Damage: the share of the strength that is lost; 1 for a particle that has failed.
