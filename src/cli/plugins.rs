@@ -88,7 +88,7 @@ fn documented(registry: &Registry) -> Vec<TypeDoc> {
     let mut docs = type_docs::<Scene>();
     for kind in KINDS {
         for entry in registry.entries(kind) {
-            docs.extend(entry.docs.iter().skip(1).cloned());
+            docs.extend(entry.docs().iter().skip(1).cloned());
         }
     }
     docs
@@ -182,11 +182,11 @@ fn description(kind: EntryKind, entry: &Entry) -> String {
         // Writing to a String cannot fail.
         let _ = writeln!(text, "  Source: {}", entry.reference);
     }
-    if entry.parameters.is_empty() {
+    if entry.parameters().is_empty() {
         return text + "\n  It has no parameters.\n";
     }
     let mut table = TextTable::new(&["parameter", "type", "default", "meaning"], 0);
-    for parameter in &entry.parameters {
+    for parameter in entry.parameters() {
         let default = match &parameter.default {
             Some(default) => default.clone(),
             None if parameter.required => "required".into(),
@@ -196,11 +196,11 @@ fn description(kind: EntryKind, entry: &Entry) -> String {
     }
     let _ = write!(text, "\n{}", table.render());
     let common = type_docs::<Scene>();
-    for docs in entry.docs.iter().skip(1).filter(|docs| !common.contains(docs)) {
+    for docs in entry.docs().iter().skip(1).filter(|docs| !common.contains(docs)) {
         let _ = write!(text, "\n{}: {}\n{}", docs.name, docs.doc, aligned(&docs.body));
     }
     let known: Vec<&str> =
-        entry.docs.iter().skip(1).filter(|docs| common.contains(docs)).map(|docs| &*docs.name).collect();
+        entry.docs().iter().skip(1).filter(|docs| common.contains(docs)).map(|docs| &*docs.name).collect();
     if !known.is_empty() {
         let _ = writeln!(text, "\nSee `meshless schema` for {}.", known.join(", "));
     }

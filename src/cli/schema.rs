@@ -69,13 +69,13 @@ fn reference(registry: &Registry) -> String {
         let mut types = Vec::new();
         for entry in registry.entries(kind) {
             let _ = write!(page, "\n## {}\n\n{}\n", entry.name, entry.doc());
-            if let Some(own) = entry.docs.first() {
+            if let Some(own) = entry.docs().first() {
                 page += &own.body;
             }
             if !entry.reference.is_empty() {
                 let _ = writeln!(page, "\nSource: {}", entry.reference);
             }
-            types.extend(entry.docs.iter().skip(1));
+            types.extend(entry.docs().iter().skip(1));
         }
         for docs in types {
             if !told.contains(docs) {

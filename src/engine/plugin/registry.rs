@@ -2,7 +2,7 @@
 
 use std::any::Any;
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use serde::de::DeserializeOwned;
 
@@ -50,16 +50,37 @@ pub struct Entry {
     pub name: &'static str,
     /// Source of the method.
     pub reference: &'static str,
-    /// Parameters with type, default and documentation.
-    pub parameters: Vec<Parameter>,
-    /// The documentation of the entry itself, then of the types of its parameters.
-    pub docs: Vec<TypeDoc>,
+    /// Made once it is asked for: a run does not need the descriptions of all that scenes may name.
+    description: Arc<LazyLock<Description>>,
+}
+
+#[derive(Debug)]
+struct Description {
+    parameters: Vec<Parameter>,
+    docs: Vec<TypeDoc>,
+}
+
+impl Description {
+    fn of<T: schemars::JsonSchema>() -> Self {
+        let described = Described::of::<T>();
+        Self { parameters: described.parameters(), docs: described.docs() }
+    }
 }
 
 impl Entry {
     /// Description, in a line or a few.
     pub fn doc(&self) -> &str {
-        self.docs.first().map_or("", |own| &own.doc)
+        self.docs().first().map_or("", |own| &own.doc)
+    }
+
+    /// Parameters with type, default and documentation.
+    pub fn parameters(&self) -> &[Parameter] {
+        &self.description.parameters
+    }
+
+    /// The documentation of the entry itself, then of the types of its parameters.
+    pub fn docs(&self) -> &[TypeDoc] {
+        &self.description.docs
     }
 }
 
@@ -207,20 +228,9 @@ impl Registry {
         name: &'static str,
         reference: &'static str,
     ) -> &mut Self {
-        self.enter(kind, name, reference, &Described::of::<T>(), |item| item.parse::<T>().map(drop))
-    }
-
-    fn enter(
-        &mut self,
-        kind: EntryKind,
-        name: &'static str,
-        reference: &'static str,
-        described: &Described,
-        parser: ParseItem,
-    ) -> &mut Self {
-        let entry = Entry { name, reference, parameters: described.parameters(), docs: described.docs() };
+        let entry = Entry { name, reference, description: Arc::new(LazyLock::new(Description::of::<T>)) };
         self.entries.insert((kind, name), entry);
-        self.parsers.insert((kind, name), parser);
+        self.parsers.insert((kind, name), |item| item.parse::<T>().map(drop));
         self
     }
 
