@@ -10,7 +10,9 @@ use super::placement;
 use super::placing::{Parsed, Placed, place_bodies};
 use super::plausibility;
 use super::spawn;
-use super::{clamps, drawn_sides, face_on, lattice_edges, loaded_sides, rows_on_faces, supports};
+use super::{
+    clamps, drawn_sides, face_on, lattice_edges, loaded_sides, narrow_gaps, rows_on_faces, supports,
+};
 use crate::plugin::{EntryKind, FormulationEntry, Registry, Setup, SetupError, SimBuilder};
 use crate::record::probe::ResolvedProbe;
 use crate::record::{Output, OutputPlan, Recorder};
@@ -68,6 +70,7 @@ fn build_in(
     drawn_sides::warn(scene, registry, &mut sim);
     loaded_sides::warn(scene, &mut sim);
     plausibility::warn(&mut sim);
+    narrow_gaps::warn(&mut sim);
     rows_on_faces::warn(&mut sim);
     let recorder_items = build_plugins(scene, registry, &mut sim)?;
     face_on::warn(&mut sim);

@@ -12,6 +12,7 @@ mod loaded_sides;
 mod memory;
 mod named_fields;
 mod names;
+mod narrow_gaps;
 mod options;
 mod overlap;
 mod placement;
