@@ -14,6 +14,8 @@ mod closed;
 
 mod stabilized;
 
+mod stretched;
+
 mod driven;
 
 mod compression;

@@ -1,5 +1,5 @@
 //! Checks of a flow during the run: particles inside of its boundaries, compression, gaps
-//! and swelling, rows that break up.
+//! and swelling, rows that break up or are drawn apart.
 
 use super::closed::ClosedWatch;
 use super::compression::CompressionWatch;
@@ -14,6 +14,7 @@ use super::lost_volume::LostVolume;
 use super::no_gap_pressure;
 use super::passing::PassingWalls;
 use super::stabilized;
+use super::stretched;
 use super::tension::TensionWatch;
 use super::unevenness::Unevenness;
 use crate::formulations::fluid::cloud::{FLOW_RECORDS, FlowCloud, Group};
@@ -46,6 +47,8 @@ struct FlowWatch {
     spacing: f64,
     compression: CompressionWatch,
     filling: FillingWatch,
+    /// Whether the user has been told of each group whose rows have been drawn apart.
+    stretched: Vec<bool>,
     unevenness: Unevenness,
     tension: TensionWatch,
     /// Compression, filling and unevenness are looked at with the frames.
@@ -75,6 +78,7 @@ pub fn add(phases: Vec<PhaseId>, groups: &[Group], diffusion: Option<String>, si
         spacing,
         compression: CompressionWatch::default(),
         filling: FillingWatch::default(),
+        stretched: Vec::new(),
         unevenness: Unevenness::default(),
         tension: TensionWatch::new(groups, sim),
         frames: Trigger::after_interval(sim.scene().record_interval()),
@@ -120,6 +124,7 @@ impl Run for FlowWatch {
             self.lost_volume.look(&cloud, step)?;
             self.compression.look(&cloud, step);
             self.filling.look(&cloud, &mut self.scratch, step);
+            stretched::look(&mut self.stretched, &cloud, &mut self.scratch, step);
             self.closed.look(at_end, &cloud, &mut self.scratch, step);
             self.unevenness.look(&cloud, &mut self.friction, step);
             self.tension.look(&cloud, &mut self.scratch, step);
@@ -139,18 +144,19 @@ impl Run for FlowWatch {
             told,
             bodies,
             (&self.compression, &self.tension),
-            (&self.filling, &self.lost_volume),
+            (&self.filling, &self.lost_volume, &self.stretched),
             self.frames,
         ))
         .unwrap_or_default()
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        let Ok((told, bodies, (compression, tension), (filling, lost), frames)) = postcard::from_bytes(state)
+        let Ok((told, bodies, (compression, tension), (filling, lost, stretched), frames)) =
+            postcard::from_bytes(state)
         else {
             return false;
         };
-        self.lost_volume = lost;
+        (self.lost_volume, self.stretched) = (lost, stretched);
         let at_end;
         (self.is_through, self.lies, at_end, self.closed, self.held_down.seen) = bodies;
         (self.is_stabilized, self.is_driven) = at_end;
