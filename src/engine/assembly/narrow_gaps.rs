@@ -67,26 +67,38 @@ fn of_body(body: &BodyPlan, sim: &SimBuilder<'_>) -> Option<String> {
 
 /// For every particle on the side of a gap with a neighbour on its other side, the narrowest such gap.
 fn gaps(body: &BodyPlan, support: f64, region: &dyn Region) -> Vec<Gap> {
+    let smallest = SMALLEST_STEP * body.spacing;
+    let outward = |x: DVec3| {
+        let slope = |axis: DVec3| region.distance(x + smallest * axis) - region.distance(x - smallest * axis);
+        DVec3::new(slope(DVec3::X), slope(DVec3::Y), slope(DVec3::Z)).normalize_or_zero()
+    };
     let is_outermost = |x: &DVec3| region.distance(*x) > -OUTERMOST * body.spacing;
-    let places = body.sites.par_iter().map(|site| site.position).filter(is_outermost);
-    let places: Vec<DVec3> = places.collect();
+    let outermost = body.sites.par_iter().map(|site| site.position).filter(is_outermost);
+    let (places, normals): (Vec<DVec3>, Vec<DVec3>) = outermost.map(|x| (x, outward(x))).unzip();
     let mut list = NeighborList::default();
     // A fault of the search is reported where the neighbours of the body are listed.
     let cloud = Cloud::uniform(&places, support);
     if NeighborSearch::default().within(cloud, 0.0, &Periodic::NONE, &mut list).is_err() {
         return Vec::new();
     }
+    // The way between two particles is looked at where their sides face each other, which those of most
+    // bodies never do.
+    let between = |k: usize, j: usize| {
+        let (from, to, normal) = (places[k], places[j], normals[k]);
+        let face = normal.dot(normals[j]) < -PARALLEL && normal.dot(to - from) > 0.0;
+        face.then(|| gap(region, from, to, normal, smallest)).flatten()
+    };
     let of = |k: usize| {
-        let between = |j: &u32| gap(region, places[k], places[*j as usize], body.spacing);
-        list.row(k).iter().filter_map(between).min_by(|a, b| a.width.total_cmp(&b.width))
+        let gaps = list.row(k).iter().filter_map(|&j| between(k, j as usize));
+        gaps.min_by(|a, b| a.width.total_cmp(&b.width))
     };
     (0..places.len()).into_par_iter().filter_map(of).collect()
 }
 
-/// The gap between two points of a region.
-fn gap(region: &dyn Region, from: DVec3, to: DVec3, spacing: f64) -> Option<Gap> {
+/// The gap between two points of a region, beside a side with that outward normal. `smallest` is the smallest
+/// step on the way, m.
+fn gap(region: &dyn Region, from: DVec3, to: DVec3, normal: DVec3, smallest: f64) -> Option<Gap> {
     let (length, along) = (from.distance(to), (to - from).normalize_or_zero());
-    let smallest = SMALLEST_STEP * spacing;
     // The way on from there to the next point on the other side of the surface.
     let leave = |start: f64, outside: bool| {
         let mut way = start;
@@ -101,15 +113,7 @@ fn gap(region: &dyn Region, from: DVec3, to: DVec3, spacing: f64) -> Option<Gap>
     };
     let out = leave(0.0, true)?;
     let back = leave(out, false)?;
-    let normal = |way: f64| {
-        let at = from + way * along;
-        let slope =
-            |axis: DVec3| region.distance(at + smallest * axis) - region.distance(at - smallest * axis);
-        DVec3::new(slope(DVec3::X), slope(DVec3::Y), slope(DVec3::Z)).normalize_or_zero()
-    };
-    let (near, far) = (normal(out), normal(back));
-    let width = (back - out) * along.dot(near);
-    (near.dot(far) < -PARALLEL).then_some(Gap { middle: from + 0.5 * (out + back) * along, width })
+    Some(Gap { middle: from + 0.5 * (out + back) * along, width: (back - out) * along.dot(normal) })
 }
 
 #[cfg(test)]
