@@ -5,10 +5,13 @@
 //! pressures of mu v / L and rho b L, however slow the flow is: in a journal bearing, a packed bed, a deep
 //! tank. So the criterion is the standard deviation of the compression p / (rho_0 c_0^2) over a body. A
 //! constant added to the pressure changes nothing, and an impact passes: it has to last for some frames.
+//! In flows in which friction has dissipated more than the kinetic energy, the deviation weighted with the
+//! power of friction counts too: a ball in a long tube compresses the liquid around it alone.
 
 use serde::{Deserialize, Serialize};
 
-use crate::formulations::fluid::cloud::{FlowCloud, FluidState, Group};
+use super::friction::{FrictionOf, FrictionOfParticle};
+use crate::formulations::fluid::cloud::{FlowCloud, FluidState, Group, RowSums};
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::notation::quantity;
 use crate::parallel::{BlockSum, sum_over_blocks};
@@ -39,7 +42,7 @@ struct ReportedDeviation {
     deviation: f64,
 }
 
-/// Number of particles, and sums of the compression and of its square.
+/// Sums of weights, and of the compression and its square times the weights.
 #[derive(Clone, Copy, Debug, Default)]
 struct CompressionSums([f64; 3]);
 
@@ -51,11 +54,27 @@ impl BlockSum for CompressionSums {
 
 impl CompressionWatch {
     /// Checks all fluids.
-    pub fn look(&mut self, cloud: &FlowCloud, step: &mut Step<'_>) {
+    pub fn look(
+        &mut self,
+        cloud: &FlowCloud,
+        scratch: &mut Vec<Option<FrictionOfParticle>>,
+        step: &mut Step<'_>,
+    ) {
         self.bodies.resize(cloud.groups.len(), ReportedDeviation::default());
+        let is_slow = cloud.viscosities.spin
+            && step.ledger.total_named("viscosity") > step.ledger.total_named("kinetic");
         for (group, told) in cloud.groups.iter().zip(&mut self.bodies) {
             let Some(state) = group.fluid() else { break };
-            let deviation = deviation(&cloud.records[group.cloud.clone()], state.bulk_modulus());
+            let records = &cloud.records[group.cloud.clone()];
+            let mut deviation = deviation(records, state.bulk_modulus(), |_| 1.0);
+            if is_slow {
+                scratch.clear();
+                scratch.resize(records.len(), None);
+                let pass = FrictionOf::new(cloud, group);
+                cloud.for_each_row(group.cloud.start, scratch, &mut RowSums::default(), &pass);
+                let power = |k: usize| scratch[k].map_or(0.0, |row| row.power);
+                deviation = deviation.max(self::deviation(records, state.bulk_modulus(), power));
+            }
             told.frames = if deviation > DEVIATION { told.frames + 1 } else { 0 };
             if told.frames < FRAMES || deviation < GROWTH * told.deviation {
                 continue;
@@ -67,18 +86,22 @@ impl CompressionWatch {
     }
 }
 
-/// The standard deviation of p over that modulus.
-fn deviation(records: &[FlowParticle], modulus: f64) -> f64 {
-    let CompressionSums([count, sum, squares]) = sum_over_blocks(records, &|_, records: &[FlowParticle]| {
-        let mut sums = CompressionSums::default();
-        for record in records.iter().filter(|record| record.volume() > 0.0) {
-            let compression = record.pressure() / modulus;
-            sums.add(&CompressionSums([1.0, compression, compression * compression]));
-        }
-        sums
-    });
-    let mean = sum / count.max(1.0);
-    (squares / count.max(1.0) - mean * mean).max(0.0).sqrt()
+/// The weighted standard deviation of p over that modulus.
+fn deviation(records: &[FlowParticle], modulus: f64, weight: impl Fn(usize) -> f64 + Sync) -> f64 {
+    let CompressionSums([all, sum, squares]) =
+        sum_over_blocks(records, &|first, records: &[FlowParticle]| {
+            let mut sums = CompressionSums::default();
+            for (k, record) in records.iter().enumerate().filter(|(_, record)| record.volume() > 0.0) {
+                let (compression, weight) = (record.pressure() / modulus, weight(first + k));
+                sums.add(&CompressionSums([1.0, compression, compression * compression].map(|x| weight * x)));
+            }
+            sums
+        });
+    if all <= 0.0 {
+        return 0.0;
+    }
+    let mean = sum / all;
+    (squares / all - mean * mean).max(0.0).sqrt()
 }
 
 fn text(group: &Group, state: &FluidState, deviation: f64, step: &Step<'_>) -> (String, String) {

@@ -122,7 +122,7 @@ impl Run for FlowWatch {
             self.held_down.look(&cloud, step)?;
             no_gap_pressure::look(&mut self.lies, &cloud, self.spacing, step)?;
             self.lost_volume.look(&cloud, step)?;
-            self.compression.look(&cloud, step);
+            self.compression.look(&cloud, &mut self.friction, step);
             self.filling.look(&cloud, &mut self.scratch, step);
             stretched::look(&mut self.stretched, &cloud, &mut self.scratch, step);
             self.closed.look(at_end, &cloud, &mut self.scratch, step);
