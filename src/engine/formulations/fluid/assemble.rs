@@ -21,7 +21,7 @@ use crate::neighbors::Periodic;
 use crate::parallel::Lanes4;
 use crate::plugin::{BodyKind, BodyPlan, SetupError, SimBuilder};
 use crate::rigid::RigidBodies;
-use crate::scene::{Dimension, Problem};
+use crate::scene::{Dimension, Problem, Quantity};
 use crate::world::BodyId;
 
 /// Properties common to all fluids of a scene.
@@ -246,7 +246,8 @@ fn sides(groups: &[Group], sim: &SimBuilder<'_>) -> Vec<GapSide> {
     groups.iter().filter_map(side).collect()
 }
 
-/// Neighbourhoods within the bodies that deform, and with spin within those to which fluids stick.
+/// Neighbourhoods within the bodies that deform, with spin within those to which fluids stick, and within
+/// those on a part of which a probe measures the force.
 fn neighborhoods(
     groups: &[Group],
     spin: bool,
@@ -255,11 +256,31 @@ fn neighborhoods(
 ) -> Result<Vec<Neighborhood>, SetupError> {
     let is_soft = |group: &Group| sim.body(group.body).kind == BodyKind::Solid;
     let sticks = |group: &Group| matches!(&group.role, Role::Boundary(surface) if surface.no_slip);
-    let asks = |group: &&Group| is_soft(group) || spin && sticks(group);
-    let mut bodies: Vec<BodyId> = groups.iter().filter(asks).map(|group| group.body).collect();
-    bodies.dedup();
-    let of = |id: BodyId| Neighborhood::new(sim.body(id), spacing, &sim.periodic());
-    bodies.into_iter().map(|id| of(id).map_err(|error| SetupError::internal(&error))).collect()
+    let mut all: Vec<Neighborhood> = Vec::new();
+    for group in groups.iter().filter(|group| group.fluid().is_none()) {
+        let is_soft = is_soft(group);
+        let has_friction = spin && (is_soft || sticks(group));
+        let asks = is_soft || has_friction || is_measured_in_part(group.body, sim);
+        if asks && all.last().is_none_or(|near| near.body != group.body) {
+            let near = Neighborhood::new(sim.body(group.body), spacing, &sim.periodic());
+            let mut near = near.map_err(|error| SetupError::internal(&error))?;
+            (near.is_soft, near.has_friction) = (is_soft, has_friction);
+            all.push(near);
+        }
+    }
+    Ok(all)
+}
+
+/// Whether a probe measures force or torque of the fluids on a part of that body.
+fn is_measured_in_part(body: BodyId, sim: &SimBuilder<'_>) -> bool {
+    sim.scene().probes.iter().any(|probe| {
+        let of_flow = matches!(probe.quantity, Quantity::FluidForce | Quantity::FluidTorque { .. });
+        let on = probe.on.as_ref().filter(|_| of_flow);
+        on.is_some_and(|on| {
+            let is_part = on.within.is_some() || on.face.is_some() || on.nearest.is_some();
+            is_part && on.means(&sim.body(body).name)
+        })
+    })
 }
 
 /// The bodies that a fluid moves, those of a phase together: solids, then rigid bodies.

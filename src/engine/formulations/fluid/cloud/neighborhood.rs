@@ -5,7 +5,7 @@ use glam::{DMat3, DVec3};
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::linalg::Sym3;
 use crate::neighbors::{Cloud, NeighborError, NeighborList, Periodic};
-use crate::plugin::{BodyKind, BodyPlan};
+use crate::plugin::BodyPlan;
 use crate::world::BodyId;
 
 /// Distance of the particles that move with one, over the spacing of the fluid.
@@ -24,6 +24,8 @@ pub struct Neighborhood {
     pub body: BodyId,
     /// Whether the body deforms.
     pub is_soft: bool,
+    /// Whether friction acts on it with its gradient of velocity.
+    pub has_friction: bool,
     pub list: NeighborList,
     /// Square of the distance from which on a neighbour counts no more, m2.
     farthest: f64,
@@ -43,12 +45,12 @@ pub struct Cluster {
 }
 
 impl Neighborhood {
-    /// That of a body in a flow of that spacing, m.
+    /// That of a body in a flow of that spacing, m, which neither deforms nor has friction.
     pub fn new(body: &BodyPlan, spacing: f64, periodic: &Periodic) -> Result<Self, NeighborError> {
         let positions: Vec<DVec3> = body.sites.iter().map(|site| site.position).collect();
         let list = NeighborList::reference(Cloud::uniform(&positions, REACH * spacing), periodic)?;
         let farthest = (FARTHEST * spacing).powi(2);
-        Ok(Self { body: body.id, is_soft: body.kind == BodyKind::Solid, list, farthest })
+        Ok(Self { body: body.id, is_soft: false, has_friction: false, list, farthest })
     }
 
     /// Whether two particles that were neighbours at the start, x apart, m, still are.
@@ -124,7 +126,8 @@ mod tests {
     fn square(away: DVec3) -> Cluster {
         let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::new(1.0, 1.0, 0.0)];
         let list = NeighborList::reference(Cloud::uniform(&corners, REACH), &Periodic::NONE).expect("a list");
-        let near = Neighborhood { body: BodyId(0), is_soft: true, list, farthest: FARTHEST * FARTHEST };
+        let farthest = FARTHEST * FARTHEST;
+        let near = Neighborhood { body: BodyId(0), is_soft: true, has_friction: true, list, farthest };
         let mut records = corners.map(|x| FlowParticle {
             place: Lanes4([x.x, x.y, 0.0, 1.0]),
             motion: Lanes4([0.1 * x.x, 0.0, 0.0, 0.0]),

@@ -23,7 +23,10 @@ impl FlowCloud {
         let bounds = || self.groups.iter().filter(|group| group.fluid().is_none());
         let is_plain = bounds().all(|group| group.is_wall() && !group.has_suction() && !group.short);
         let has_blocks = self.blocks.as_ref().is_some_and(|blocks| !blocks.hides);
-        self.others.may_be_local = has_blocks && is_plain && !has_edges && self.neighborhoods.is_empty();
+        self.others.may_be_local = has_blocks
+            && is_plain
+            && !has_edges
+            && !self.neighborhoods.iter().any(|near| near.is_soft || near.has_friction);
         self.others.is_local = self.others.may_be_local;
     }
 

@@ -1,4 +1,4 @@
-//! The point of action of the pressure on deformable bodies.
+//! The point of action of the pressure on bodies, deformable ones and those of which a part is measured.
 //!
 //! The pressure force of a pair across a surface acts on a particle below it. Taken at the midpoint of the
 //! pair, which on average lies on the surface, half of its moment belongs to the fluid; the other half,
@@ -18,14 +18,14 @@ use glam::{DMat3, DVec3};
 
 use super::cluster_forces::{BodyClusters, ClusterForces};
 use crate::correction::{add_moment, moment_of};
-use crate::formulations::fluid::cloud::{FlowCloud, Group, NearPairs, RowPass, RowSums};
+use crate::formulations::fluid::cloud::{FlowCloud, Group, NearPairs, Neighborhood, RowPass, RowSums};
 use crate::parallel::{Arithmetic, Vector};
 use crate::world::Force;
 
 /// Part of the force, as they are booked, that the pressure of a boundary makes.
 const OF_BOUNDARY: usize = 1;
 
-/// Finds the moments of pressure on the particles of a deformable body, and the forces that make them.
+/// Finds the moments of pressure on the particles of a body, and the forces that make them.
 #[derive(Debug)]
 pub struct PressureMoments {
     moments: Vec<PressureMoment>,
@@ -48,8 +48,14 @@ struct PressureMoment {
 
 impl PressureMoments {
     /// Adds the forces to the whole and to its part of the pressure of the boundary.
-    pub fn add(&mut self, cloud: &FlowCloud, group: &Group, total: &mut [Force], parts: &mut [DVec3]) {
-        let Some(near) = cloud.soft_neighborhood(group) else { return };
+    pub fn add(
+        &mut self,
+        cloud: &FlowCloud,
+        group: &Group,
+        near: &Neighborhood,
+        total: &mut [Force],
+        parts: &mut [DVec3],
+    ) {
         self.moments.resize(group.rows.len(), PressureMoment::default());
         let pass = PressureMomentOn { cloud };
         cloud.for_each_row(group.cloud.start, &mut self.moments, &mut self.sums, &pass);

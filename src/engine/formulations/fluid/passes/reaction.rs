@@ -16,7 +16,7 @@ impl FlowCloud {
             let mut total = vec![Force(DVec3::ZERO); group.rows.len()];
             let mut parts = vec![DVec3::ZERO; PARTS * group.rows.len()];
             self.force(group, &mut total, &mut parts);
-            SurfaceMoments::default().add(self, group, &mut total, &mut parts);
+            SurfaceMoments::default().add_measured(self, group, &mut total, &mut parts);
             self.repel(group, &mut total, &mut parts);
             self.press_gaps(group, &mut total, &mut parts);
             self.add_edge_forces(group, &mut total, &mut parts);

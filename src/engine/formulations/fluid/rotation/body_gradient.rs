@@ -9,12 +9,17 @@ use crate::parallel::for_each_block;
 impl FlowCloud {
     /// The neighbours of the particles of a boundary in its body, if friction with it asks for them.
     pub(in crate::formulations::fluid) fn neighborhood(&self, group: &Group) -> Option<&Neighborhood> {
-        self.neighborhoods.iter().find(|near| self.viscosities.spin && near.body == group.body)
+        self.neighborhoods.iter().find(|near| near.has_friction && near.body == group.body)
     }
 
     /// The neighbours of the particles of a deformable body in it.
     pub(in crate::formulations::fluid) fn soft_neighborhood(&self, group: &Group) -> Option<&Neighborhood> {
         self.neighborhoods.iter().find(|near| near.is_soft && near.body == group.body)
+    }
+
+    /// The neighbours of the particles of a boundary in its body, whatever asks for them.
+    pub(in crate::formulations::fluid) fn any_neighborhood(&self, group: &Group) -> Option<&Neighborhood> {
+        self.neighborhoods.iter().find(|near| near.body == group.body)
     }
 
     /// Calls `then` with `out` of every particle of a boundary and the velocity gradient of its body there,

@@ -2,6 +2,8 @@
 
 use std::f64::consts::PI;
 
+use glam::DVec3;
+
 use super::{column, double, simulation};
 use crate::formulations::fluid::FlowCloud;
 use crate::simulation::Simulation;
@@ -257,4 +259,36 @@ fn a_body_that_rises_between_walls_that_do_not_pull_is_warned_of() {
     };
     assert!(told(false));
     assert!(!told(true));
+}
+
+/// Forces of still water on parts of one wall: pairs act below its surface, and the tension along it that
+/// this makes was measured with the forces where a part ends.
+#[test]
+fn a_part_of_a_wall_bears_the_pressure_on_it_alone() {
+    let mut sim = simulation(
+        r#"(dimension: Two, gravity: (0, -10), materials: {"water": Fluid(density: 1000.0, sound_speed: 40.0)},
+            bodies: [
+                (name: "water", material: "water", spacing: 0.05, formulation: Fluid, shape: Box(min: (0, 0), max: (1.2, 0.6))),
+                (name: "tank", material: "wall", spacing: 0.05, formulation: Wall(slip: Free),
+                 shape: Difference(Box(min: (-0.2, -0.2), max: (1.4, 0.8)), Box(min: (0, 0), max: (1.2, 2)))),
+            ],
+            probes: [
+                (name: "half", on: Select(body: "tank", within: Box(min: (0.6, -1), max: (2, 2))), quantity: FluidForce),
+                (name: "above", on: Select(body: "tank", within: Box(min: (1.2, 0.3), max: (2, 2))), quantity: FluidForce),
+            ],
+            time: (end: 1e-3))"#,
+    );
+    sim.run(|_| true).expect("a run");
+    let cloud = sim.resources().get::<FlowCloud>();
+    let forces = cloud.forces_on(BodyId(1)).expect("a wet tank");
+    let places = column::<Position>(&sim, 1);
+    let on = |low: [f64; 2]| -> DVec3 {
+        let is_there = |x: &Position| x.0.x > low[0] && x.0.y > low[1];
+        places.iter().zip(&forces).filter(|(x, _)| is_there(x)).map(|(_, (force, _))| *force).sum()
+    };
+    // rho g H^2 / 2 against the right side, of which a quarter is on its upper half.
+    let exact = 0.5 * 1000.0 * 10.0 * 0.6 * 0.6;
+    let (half, above) = (on([0.6, -1.0]), on([1.2, 0.3]));
+    assert!((half.x / exact - 1.0).abs() < 0.01, "{}", half.x / exact);
+    assert!(above.y.abs() < 0.005 * exact, "{}", above.y / exact);
 }

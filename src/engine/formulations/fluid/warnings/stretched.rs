@@ -4,10 +4,10 @@
 //! The rate of compression is `D : M` with the rate of strain D and `M = sum_j V_j w_ij x_ij (x) x_ij`, which
 //! is the identity where particles are evenly spread. In a lattice that is stretched along its rows the
 //! component of M along them goes to zero, `m_i = sum_j V_j w_ij x_ij` stays zero by symmetry, and
-//! `sum_j V_j W_ij` stays one: across the stretch the fluid no longer contracts. A round drop that is drawn out
-//! to three and a half times its length is 1.5 times as wide as it should be, at any resolution; in a
-//! `Relaxed` lattice, whose particles change places, it is right within 0.2 %. Particles at a free surface have
-//! a large `m_i`, and those of a thread in empty space do not fill it.
+//! `sum_j V_j W_ij` stays one: across the stretch the fluid no longer contracts. A round drop that is drawn
+//! out to three and a half times its length is 1.5 times as wide as it should be, at any resolution; in a
+//! `Relaxed` lattice, whose particles change places, it is right within 0.2 %. Particles at a free surface
+//! have a large `m_i`, and those of a thread in empty space do not fill it.
 
 use std::ops::Range;
 
@@ -25,8 +25,8 @@ const LACKING: f64 = 0.75;
 const EVEN: f64 = 0.15;
 /// Smallest `sum_j V_j W_ij` of a particle whose surroundings count as filled.
 const FILLED: f64 = 0.85;
-/// Share of such particles that is worth a warning. Drops that were 6 to 60 % too wide had 0.45 to 0.78, those
-/// within 2 % had 0.28 at most.
+/// Share of such particles that is worth a warning. Drops that were 6 to 60 % too wide had 0.45 to 0.78,
+/// those within 2 % had 0.28 at most.
 const SHARE: f64 = 0.3;
 
 /// Checks all fluids; `told` says which of them the user has been warned of.
@@ -65,7 +65,8 @@ fn mean(rows: &[Option<f64>]) -> f64 {
     sum / count.max(1.0)
 }
 
-/// One for a particle whose neighbours along an axis are out of reach, zero for others, none for removed ones.
+/// One for a particle whose neighbours along an axis are out of reach, zero for others, none for removed
+/// ones.
 struct Stretched<'a>(&'a FlowCloud);
 
 impl RowPass<0, 5> for Stretched<'_> {
