@@ -271,7 +271,7 @@ fn everything_that_is_registered_is_listed_and_described() {
             assert!(list.contains(entry.name), "{} is missing in\n{list}", entry.name);
             let description = meshless(&folder, &["plugins", entry.name]);
             assert_success(&description);
-            for parameter in &entry.parameters {
+            for parameter in entry.parameters() {
                 assert!(out(&description).contains(&parameter.doc), "{} of {}", parameter.name, entry.name);
             }
         }
