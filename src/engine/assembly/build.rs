@@ -11,7 +11,8 @@ use super::placing::{Parsed, Placed, place_bodies};
 use super::plausibility;
 use super::spawn;
 use super::{
-    clamps, drawn_sides, face_on, lattice_edges, loaded_sides, narrow_gaps, rows_on_faces, supports,
+    clamps, drawn_sides, face_on, gaps_at_repeats, lattice_edges, loaded_sides, narrow_gaps, rows_on_faces,
+    supports,
 };
 use crate::plugin::{EntryKind, FormulationEntry, Registry, Setup, SetupError, SimBuilder};
 use crate::record::probe::ResolvedProbe;
@@ -74,6 +75,7 @@ fn build_in(
     rows_on_faces::warn(&mut sim);
     let recorder_items = build_plugins(scene, registry, &mut sim)?;
     face_on::warn(&mut sim);
+    gaps_at_repeats::warn(&mut sim);
     crate::formulations::fluid::damp_sub_cycled_bodies(&mut sim);
     with_neighbours().for_each(|field| sim.add_field(field));
     assemble(scene, formulations, &mut sim)?;

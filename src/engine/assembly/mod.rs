@@ -5,6 +5,7 @@ mod build;
 mod clamps;
 mod drawn_sides;
 mod face_on;
+mod gaps_at_repeats;
 #[cfg(test)]
 mod handed_tests;
 mod lattice_edges;
