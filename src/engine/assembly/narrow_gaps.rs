@@ -25,7 +25,7 @@ const MIN_SIDES: f64 = 2.0;
 
 /// What lies between two neighbours on both sides of a gap.
 #[derive(Clone, Copy)]
-struct Gap {
+struct NarrowGap {
     /// Its middle, m.
     middle: DVec3,
     /// Distance of its sides, m.
@@ -66,7 +66,7 @@ fn of_body(body: &BodyPlan, sim: &SimBuilder<'_>) -> Option<String> {
 }
 
 /// For every particle on the side of a gap with a neighbour on its other side, the narrowest such gap.
-fn gaps(body: &BodyPlan, support: f64, region: &dyn Region) -> Vec<Gap> {
+fn gaps(body: &BodyPlan, support: f64, region: &dyn Region) -> Vec<NarrowGap> {
     let smallest = SMALLEST_STEP * body.spacing;
     let outward = |x: DVec3| {
         let slope = |axis: DVec3| region.distance(x + smallest * axis) - region.distance(x - smallest * axis);
@@ -97,7 +97,7 @@ fn gaps(body: &BodyPlan, support: f64, region: &dyn Region) -> Vec<Gap> {
 
 /// The gap between two points of a region, beside a side with that outward normal. `smallest` is the smallest
 /// step on the way, m.
-fn gap(region: &dyn Region, from: DVec3, to: DVec3, normal: DVec3, smallest: f64) -> Option<Gap> {
+fn gap(region: &dyn Region, from: DVec3, to: DVec3, normal: DVec3, smallest: f64) -> Option<NarrowGap> {
     let (length, along) = (from.distance(to), (to - from).normalize_or_zero());
     // The way on from there to the next point on the other side of the surface.
     let leave = |start: f64, outside: bool| {
@@ -113,7 +113,7 @@ fn gap(region: &dyn Region, from: DVec3, to: DVec3, normal: DVec3, smallest: f64
     };
     let out = leave(0.0, true)?;
     let back = leave(out, false)?;
-    Some(Gap { middle: from + 0.5 * (out + back) * along, width: (back - out) * along.dot(normal) })
+    Some(NarrowGap { middle: from + 0.5 * (out + back) * along, width: (back - out) * along.dot(normal) })
 }
 
 #[cfg(test)]

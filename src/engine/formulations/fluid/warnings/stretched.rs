@@ -41,7 +41,7 @@ pub fn look(told: &mut Vec<bool>, cloud: &FlowCloud, scratch: &mut Vec<Option<f6
         }
         scratch.clear();
         scratch.resize(group.cloud.len(), None);
-        cloud.for_each_row(group.cloud.start, scratch, &mut RowSums::default(), &Stretched(cloud));
+        cloud.for_each_row(group.cloud.start, scratch, &mut RowSums::default(), &DrawnApart(cloud));
         let share = mean(scratch);
         if share <= SHARE {
             continue;
@@ -67,9 +67,9 @@ fn mean(rows: &[Option<f64>]) -> f64 {
 
 /// One for a particle whose neighbours along an axis are out of reach, zero for others, none for removed
 /// ones.
-struct Stretched<'a>(&'a FlowCloud);
+struct DrawnApart<'a>(&'a FlowCloud);
 
-impl RowPass<0, 5> for Stretched<'_> {
+impl RowPass<0, 5> for DrawnApart<'_> {
     type Output = Option<f64>;
 
     fn among(&self) -> Range<usize> {
