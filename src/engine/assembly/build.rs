@@ -11,8 +11,8 @@ use super::placing::{Parsed, Placed, place_bodies};
 use super::plausibility;
 use super::spawn;
 use super::{
-    clamps, drawn_sides, face_on, gaps_at_repeats, lattice_edges, loaded_sides, narrow_gaps, rows_on_faces,
-    supports,
+    clamps, drawn_sides, face_on, gaps_at_repeats, lattice_edges, loaded_sides, locking, narrow_gaps,
+    rows_on_faces, supports,
 };
 use crate::plugin::{EntryKind, FormulationEntry, Registry, Setup, SetupError, SimBuilder};
 use crate::record::probe::ResolvedProbe;
@@ -67,6 +67,7 @@ fn build_in(
     let mut sim = SimBuilder::new(scene, source.folder(), bodies, phases);
     clamps::warn(scene, registry, &mut sim);
     lattice_edges::warn(scene, registry, &mut sim);
+    locking::warn(&mut sim);
     supports::place(scene, registry, &mut sim);
     drawn_sides::warn(scene, registry, &mut sim);
     loaded_sides::warn(scene, &mut sim);

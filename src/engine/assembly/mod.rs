@@ -10,6 +10,7 @@ mod gaps_at_repeats;
 mod handed_tests;
 mod lattice_edges;
 mod loaded_sides;
+mod locking;
 mod memory;
 mod named_fields;
 mod names;
