@@ -107,12 +107,14 @@ pub enum Quantity {
     /// Sum of all forces on the particles of the selection except those of supports \[N\]. Where a condition
     /// holds or drives the selection, it is the force that the body exerts on the condition, its own weight
     /// included: the weight of a body that hangs from its support points down. Of a rigid body it is that on
-    /// the whole body. Walls and half-spaces have no weight: on them it is that of flows and contacts.
+    /// the whole body. Walls and half-spaces have no weight: on them it is that of flows and contacts. On a
+    /// part of a wall it is 6 and 3 % off in water 10 and 20 particles deep, as flows act below the surface
+    /// and the tension that this makes along the wall counts where the part ends: use `FluidForce` there.
     Force,
     /// Torque of the same forces about the centre of mass of the selection \[N m\]. A half-space has none:
-    /// use `Moment`.
+    /// use `Moment`. On a part of a wall use `FluidTorque`.
     Torque,
-    /// Moment of the same forces about a fixed point \[N m\].
+    /// Moment of the same forces about a fixed point \[N m\]. On a part of a wall use `FluidTorque`.
     Moment {
         /// The point \[m\].
         about: Vec3,
