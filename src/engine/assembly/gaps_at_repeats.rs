@@ -25,9 +25,14 @@ pub(super) fn warn(sim: &mut SimBuilder<'_>) {
 }
 
 fn at_planes(body: &BodyPlan, sim: &SimBuilder<'_>) -> Vec<String> {
+    let planes: Vec<_> =
+        sim.mirror_planes().into_iter().filter(|plane| plane.bodies.contains(body.id)).collect();
+    // A shape may be a mesh, which is read from its file.
+    if planes.is_empty() {
+        return Vec::new();
+    }
     let shape = &sim.scene().bodies[body.id.0].shape;
     let Ok(region) = shape.region(sim.dimension(), sim.folder(), "shape") else { return Vec::new() };
-    let planes = sim.mirror_planes().into_iter().filter(|plane| plane.bodies.contains(body.id));
     let of = |axis: usize, at: f64| {
         let gap = before_plane(body, &*region, axis, at)?;
         Some(format!(
@@ -39,7 +44,7 @@ fn at_planes(body: &BodyPlan, sim: &SimBuilder<'_>) -> Vec<String> {
             gap / body.spacing
         ))
     };
-    planes.filter_map(|plane| of(plane.axis, plane.at)).collect()
+    planes.iter().filter_map(|plane| of(plane.axis, plane.at)).collect()
 }
 
 /// The notable gap between most of the outermost particles and a plane, m.

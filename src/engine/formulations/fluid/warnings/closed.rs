@@ -6,7 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::filling::FillingPass;
+use super::filling::filling;
 use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud, Group, RowSums};
 use crate::notation::quantity;
 use crate::schedule::{AccountKind, Step};
@@ -140,7 +140,7 @@ pub(super) fn is_closed(cloud: &FlowCloud, scratch: &mut Vec<Option<f64>>) -> bo
     cloud.fluids().all(|rows| {
         scratch.clear();
         scratch.resize(rows.len(), None);
-        cloud.for_each_row(rows.start, scratch, &mut RowSums::default(), &FillingPass(cloud));
+        cloud.for_each_row(rows.start, scratch, &mut RowSums::default(), &filling(cloud));
         let flows = cloud.records()[rows].iter().filter(|record| record.volume() > 0.0).count();
         let outside = flows.saturating_sub(scratch.iter().flatten().count());
         let side = (flows as f64).powf(if cloud.plane { 1.0 / 2.0 } else { 2.0 / 3.0 });

@@ -4,15 +4,11 @@
 //! fill space. The density of a particle is integrated from the velocities around it, and does not change
 //! with gaps.
 
-use std::ops::Range;
-
-use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use crate::correction::{add_moment, moment_of};
-use crate::formulations::fluid::cloud::{FlowCloud, NearPairs, RowPass, RowSums, smallest_eigenvalue};
+use super::surroundings::{FilledAround, Surroundings, count_and_sum};
+use crate::formulations::fluid::cloud::{FlowCloud, RowPass, RowSums};
 use crate::notation::quantity;
-use crate::parallel::{Arithmetic, Vector, sum_over_blocks};
 use crate::schedule::{Step, replace_warning};
 
 /// Smallest eigenvalue of the moment matrix above which a particle is inside the fluid.
@@ -41,7 +37,7 @@ impl FillingWatch {
             }
             scratch.clear();
             scratch.resize(group.cloud.len(), None);
-            cloud.for_each_row(group.cloud.start, scratch, &mut RowSums::default(), &FillingPass(cloud));
+            cloud.for_each_row(group.cloud.start, scratch, &mut RowSums::default(), &filling(cloud));
             let Some(mean) = mean_filling(scratch) else { continue };
             let off = (mean - 1.0).abs();
             if off <= SHARE.max(GROWTH * *told) {
@@ -67,43 +63,17 @@ impl FillingWatch {
 
 /// Mean of the filling over the particles inside; none where there are too few.
 fn mean_filling(rows: &[Option<f64>]) -> Option<f64> {
-    let (inside, filling) = sum_over_blocks(rows, &|_, rows: &[Option<f64>]| {
-        (rows.iter().flatten().count() as f64, rows.iter().flatten().sum::<f64>())
-    });
+    let (inside, filling) = count_and_sum(rows);
     (inside > PART * rows.len() as f64).then(|| filling / inside)
 }
 
 /// The filling about a particle; none near a surface.
-pub struct FillingPass<'a>(pub &'a FlowCloud);
-
-impl RowPass<0, 4> for FillingPass<'_> {
-    type Output = Option<f64>;
-
-    fn among(&self) -> Range<usize> {
-        self.0.everything()
-    }
-
-    fn reads(&self, _: usize) -> [DVec3; 0] {
-        []
-    }
-
-    #[inline(always)]
-    fn add<A: Arithmetic>(
-        &self,
-        near: &NearPairs<A>,
-        _: &[Vector<A>; 0],
-        _: &[Vector<A>; 0],
-        [xx, yy, zz, filling]: &mut [Vector<A>; 4],
-    ) {
-        add_moment([xx, yy, zz], near.volume * near.weight, near.x_ij);
-        filling.x = near.volume.mul_add(near.kernel, filling.x);
-    }
-
-    fn output(&self, i: usize, &[xx, yy, zz, filling]: &[DVec3; 4]) -> Option<f64> {
-        let cloud = self.0;
-        let own = cloud.records[i].volume();
-        let moment = moment_of([xx, yy, zz], cloud.plane);
-        let is_inside = own > 0.0 && smallest_eigenvalue(moment.matrix(), cloud.plane) > INSIDE;
-        is_inside.then(|| filling.x + own * cloud.kernel.value(0.0))
+pub fn filling(cloud: &FlowCloud) -> impl RowPass<0, 5, Output = Option<f64>> {
+    Surroundings {
+        cloud,
+        output: |i: usize, around: &FilledAround| {
+            let is_inside = cloud.records[i].volume() > 0.0 && around.least > INSIDE;
+            is_inside.then_some(around.filling)
+        },
     }
 }

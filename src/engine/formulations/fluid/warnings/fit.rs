@@ -6,7 +6,7 @@
 
 use rayon::prelude::*;
 
-use super::filling::FillingPass;
+use super::filling::filling;
 use crate::formulations::fluid::cloud::{FlowCloud, RowSums};
 use crate::schedule::Step;
 use crate::world::BodyId;
@@ -31,7 +31,7 @@ pub fn look(cloud: &FlowCloud, scratch: &mut Vec<Option<f64>>, step: &mut Step<'
     for fluid in cloud.groups.iter().filter(|group| group.fluid().is_some()) {
         scratch.clear();
         scratch.resize(fluid.cloud.len(), None);
-        cloud.for_each_row(fluid.cloud.start, scratch, &mut RowSums::default(), &FillingPass(cloud));
+        cloud.for_each_row(fluid.cloud.start, scratch, &mut RowSums::default(), &filling(cloud));
         let rows = || fluid.cloud.clone().zip(&*scratch).filter_map(|(i, filling)| Some((i, (*filling)?)));
         let is_bounded = |i: usize| cloud.near_row(i).last().is_some_and(|&j| j as usize >= cloud.fluid);
         let inside: Vec<f64> = rows().filter(|(i, _)| !is_bounded(*i)).map(|(_, filling)| filling).collect();

@@ -16,6 +16,8 @@ mod stabilized;
 
 mod stretched;
 
+mod surroundings;
+
 mod driven;
 
 mod compression;

@@ -9,14 +9,9 @@
 //! `Relaxed` lattice, whose particles change places, it is right within 0.2 %. Particles at a free surface
 //! have a large `m_i`, and those of a thread in empty space do not fill it.
 
-use std::ops::Range;
-
-use glam::DVec3;
-
-use crate::correction::{add_moment, moment_of};
-use crate::formulations::fluid::cloud::{FlowCloud, NearPairs, RowPass, RowSums, smallest_eigenvalue};
+use super::surroundings::{FilledAround, Surroundings, count_and_sum};
+use crate::formulations::fluid::cloud::{FlowCloud, RowPass, RowSums};
 use crate::notation::quantity;
-use crate::parallel::{Arithmetic, Vector, sum_over_blocks};
 use crate::schedule::Step;
 
 /// Smallest eigenvalue of M below which a particle lacks neighbours along an axis.
@@ -41,7 +36,7 @@ pub fn look(told: &mut Vec<bool>, cloud: &FlowCloud, scratch: &mut Vec<Option<f6
         }
         scratch.clear();
         scratch.resize(group.cloud.len(), None);
-        cloud.for_each_row(group.cloud.start, scratch, &mut RowSums::default(), &DrawnApart(cloud));
+        cloud.for_each_row(group.cloud.start, scratch, &mut RowSums::default(), &drawn_apart(cloud));
         let share = mean(scratch);
         if share <= SHARE {
             continue;
@@ -59,47 +54,19 @@ pub fn look(told: &mut Vec<bool>, cloud: &FlowCloud, scratch: &mut Vec<Option<f6
 
 /// Mean over the particles that are there.
 fn mean(rows: &[Option<f64>]) -> f64 {
-    let (count, sum) = sum_over_blocks(rows, &|_, rows: &[Option<f64>]| {
-        (rows.iter().flatten().count() as f64, rows.iter().flatten().sum::<f64>())
-    });
+    let (count, sum) = count_and_sum(rows);
     sum / count.max(1.0)
 }
 
 /// One for a particle whose neighbours along an axis are out of reach, zero for others, none for removed
 /// ones.
-struct DrawnApart<'a>(&'a FlowCloud);
-
-impl RowPass<0, 5> for DrawnApart<'_> {
-    type Output = Option<f64>;
-
-    fn among(&self) -> Range<usize> {
-        self.0.everything()
-    }
-
-    fn reads(&self, _: usize) -> [DVec3; 0] {
-        []
-    }
-
-    #[inline(always)]
-    fn add<A: Arithmetic>(
-        &self,
-        near: &NearPairs<A>,
-        _: &[Vector<A>; 0],
-        _: &[Vector<A>; 0],
-        [xx, yy, zz, first, filling]: &mut [Vector<A>; 5],
-    ) {
-        let weight = near.volume * near.weight;
-        add_moment([xx, yy, zz], weight, near.x_ij);
-        *first = near.x_ij.mul_add(weight, *first);
-        filling.x = near.volume.mul_add(near.kernel, filling.x);
-    }
-
-    fn output(&self, i: usize, &[xx, yy, zz, first, filling]: &[DVec3; 5]) -> Option<f64> {
-        let cloud = self.0;
-        let own = cloud.records[i].volume();
-        let lacks = smallest_eigenvalue(moment_of([xx, yy, zz], cloud.plane).matrix(), cloud.plane) < LACKING;
-        let is_even = cloud.kernel.smoothing_length() * first.length() < EVEN;
-        let is_filled = filling.x + own * cloud.kernel.value(0.0) > FILLED;
-        (own > 0.0).then_some(if lacks && is_even && is_filled { 1.0 } else { 0.0 })
+fn drawn_apart(cloud: &FlowCloud) -> impl RowPass<0, 5, Output = Option<f64>> {
+    Surroundings {
+        cloud,
+        output: |i: usize, around: &FilledAround| {
+            let is_even = cloud.kernel.smoothing_length() * around.first.length() < EVEN;
+            let is_apart = around.least < LACKING && is_even && around.filling > FILLED;
+            (cloud.records[i].volume() > 0.0).then_some(if is_apart { 1.0 } else { 0.0 })
+        },
     }
 }
