@@ -4,8 +4,9 @@
 //! Such a body is in the cloud twice, once for each side, with a pressure of its own for either. A fluid
 //! particle interacts with the copy of its side, with the whole thickness of the body. The side follows from
 //! the sign of n_j . x_ji, with the current normal n_j of the deformed body. Pairs of fluid particles through
-//! the body are left out. Both are decided where the lists are built, in the same way for i and j, so that
-//! every force keeps its opposite.
+//! the body, in at one face and out at the other, are left out; those across the corner of a free end are
+//! not, as nothing would fill the part of the kernel that they do. Both are decided where the lists are built,
+//! in the same way for i and j, so that every force keeps its opposite.
 
 use std::collections::BinaryHeap;
 use std::ops::Range;
@@ -27,6 +28,8 @@ pub struct ThinBody {
     pub copies: [Range<usize>; 2],
     spacing: f64,
     frames: Vec<SurfaceFrame>,
+    /// Whether a particle is on the face to the side of the normal, and on the other.
+    faces: Vec<[bool; 2]>,
 }
 
 /// Neighbours before and behind a particle along the two directions of the mid-surface, as numbers in the
@@ -69,7 +72,14 @@ impl ThinBody {
             frames.push(frame);
         }
         orient(&mut frames, &normals, &list);
-        Self { copies, spacing: body.spacing, frames }
+        let spacing = body.spacing;
+        let faces = (0..sites.len()).map(|i| {
+            let normal = frames[i].normal(|k| sites[k]).normalize_or_zero();
+            let neighbors = list.row(i).iter().map(|&j| sites[j as usize] - sites[i]);
+            faces(normal, neighbors, spacing)
+        });
+        let faces = faces.collect();
+        Self { copies, spacing, frames, faces }
     }
 
     /// Normal at particle `k`, of any length, from the positions of the cloud.
@@ -83,6 +93,20 @@ impl SurfaceFrame {
         let between = |[from, to]: [u32; 2]| position(to as usize) - position(from as usize);
         self.sign * between(self.along).cross(self.across.map_or(DVec3::Z, between))
     }
+}
+
+/// Whether a particle with these neighbours is on the faces to both sides of a thin body: no neighbour is
+/// straight above it, or below.
+fn faces(normal: DVec3, neighbors: impl Iterator<Item = DVec3>, spacing: f64) -> [bool; 2] {
+    let mut faces = [true; 2];
+    for x in neighbors {
+        let height = x.dot(normal);
+        if (x - height * normal).length() < REACH * spacing {
+            faces[0] &= height < 0.5 * spacing;
+            faces[1] &= height > -0.5 * spacing;
+        }
+    }
+    faces
 }
 
 /// Turns the normals of neighbours to one side: from each particle that is known to the one that is most
@@ -120,9 +144,7 @@ impl Sides<'_> {
     /// fluid particles, seen or not.
     pub fn sees(&self, i: usize, j: usize, walls: &NeighborList) -> bool {
         if j < self.fluid {
-            return i == j
-                || !(self.is_hidden(i.min(j), i.max(j), i, walls)
-                    || self.is_hidden(i.min(j), i.max(j), j, walls));
+            return i == j || !self.thin.iter().any(|body| self.hides(body, i.min(j), i.max(j), walls));
         }
         for body in self.thin {
             for (copy, positive) in body.copies.iter().zip([true, false]) {
@@ -140,15 +162,27 @@ impl Sides<'_> {
         self.periodic.minimal_image(self.positions[i] - self.positions[j])
     }
 
-    /// Whether a thin body near `at` lies between two fluid particles.
-    fn is_hidden(&self, i: usize, k: usize, at: usize, walls: &NeighborList) -> bool {
-        walls.row(at).iter().map(|&j| j as usize).any(|j| {
-            let Some(body) = self.thin.iter().find(|body| body.copies[0].contains(&j)) else { return false };
-            let normal = body.normal(j - body.copies[0].start, self.positions);
-            let (first, second) = (self.from(j, i), self.from(j, k));
-            let (a, b) = (normal.dot(first), normal.dot(second));
-            (a >= 0.0) != (b >= 0.0)
-                && (first + a / (a - b) * (second - first)).length() < REACH * body.spacing
-        })
+    /// Whether the line between two fluid particles passes through both faces of a body.
+    fn hides(&self, body: &ThinBody, i: usize, k: usize, walls: &NeighborList) -> bool {
+        let mut passed = [false; 2];
+        for &j in walls.row(i).iter().chain(walls.row(k)) {
+            let j = j as usize;
+            if !body.copies[0].contains(&j) {
+                continue;
+            }
+            let faces = body.faces[j - body.copies[0].start];
+            if faces != [false; 2] && self.crosses(body, j, i, k) {
+                passed = [passed[0] || faces[0], passed[1] || faces[1]];
+            }
+        }
+        passed == [true; 2]
+    }
+
+    /// Whether that line passes beside particle `j` of the body.
+    fn crosses(&self, body: &ThinBody, j: usize, i: usize, k: usize) -> bool {
+        let normal = body.normal(j - body.copies[0].start, self.positions);
+        let (first, second) = (self.from(j, i), self.from(j, k));
+        let (a, b) = (normal.dot(first), normal.dot(second));
+        (a >= 0.0) != (b >= 0.0) && (first + a / (a - b) * (second - first)).length() < REACH * body.spacing
     }
 }

@@ -247,3 +247,29 @@ fn momenta_are_kept_with_water_around_a_fin_on_a_block() {
     assert!((turned - angular).length() < 1e-9 * angular.length(), "{angular} {turned}");
     assert!(sim.ledger().relative_error().abs() < 2e-2, "{}", sim.ledger().relative_error());
 }
+
+/// A sheet, two particles thick, that ends in a liquid of one pressure, on one lattice with it: nothing moves,
+/// also where particles of both sides meet in front of the end.
+#[test]
+fn a_liquid_around_the_end_of_a_sheet_stays_at_rest() {
+    for (precision, formulation) in
+        [("Double", "TotalLagrangian"), ("Double", "Rigid()"), ("Mixed", "TotalLagrangian")]
+    {
+        let mut sim = simulation(&format!(
+            r#"(precision: {precision}, dimension: Two, domain: (min: (-0.2, -0.2), max: (0.2, 0.2), periodic: [X, Y]),
+                materials: {{"water": Fluid(density: 1000.0, sound_speed: 20.0),
+                    "rubber": NeoHookean(density: 1000.0, young: 1.0e6, poisson: 0.3)}},
+                bodies: [
+                    (name: "water", material: "water", spacing: 0.01, formulation: Fluid(pressure: "2000"),
+                     shape: Difference(Box(min: (-0.2, -0.2), max: (0.2, 0.2)), Box(min: (-0.1, -0.01), max: (0.1, 0.01)))),
+                    (name: "sheet", material: "rubber", spacing: 0.01, formulation: {formulation},
+                     shape: Box(min: (-0.1, -0.01), max: (0.1, 0.01))),
+                ],
+                time: (end: 1.0))"#
+        ));
+        sim.start().expect("a start");
+        let weight = 2000.0 * 0.01;
+        let most = column::<Force>(&sim, 0).iter().map(|force| force.0.length()).fold(0.0, f64::max);
+        assert!(most < 1e-5 * weight, "{precision}, {formulation}: {most} N of {weight} N");
+    }
+}
