@@ -12,6 +12,7 @@ use super::correction_impulse::{ParticleRows, Particles, give_to_rigid_body};
 use super::drag;
 use super::drag::DragColumns;
 use super::exchange::{CouplingForce, CouplingFriction, CouplingPressure, Exchange};
+use super::sub_cycled::share_of_long_step;
 use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud, FluidState, Group, PARTS, PLACES_BEFORE, Role};
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::formulations::fluid::lists::blocks::pack_states;
@@ -58,9 +59,11 @@ pub fn add_force_on_bodies(
     if follows {
         drag::add(sim, &bodies, phase, label);
     }
+    let step_of = |id| (id, SURFACE * share_of_long_step(sim.body(id).spacing, sim));
     let coupling = Coupling {
         phase,
         follows,
+        steps: bodies.iter().map(step_of).collect(),
         total: Vec::new(),
         parts: Vec::new(),
         other_total: Vec::new(),
@@ -128,6 +131,8 @@ struct Coupling {
     phase: PhaseId,
     /// Whether friction follows the motion of the bodies in the sub-steps.
     follows: bool,
+    /// Stable step of the surface of each body, in units of h / sqrt(K / rho).
+    steps: Vec<(BodyId, f64)>,
     /// Force on the particles of a body, and its parts, N.
     total: Vec<Force>,
     parts: Vec<DVec3>,
@@ -217,8 +222,9 @@ impl Coupling {
         {
             let fluids = cloud.groups.iter().filter_map(Group::fluid);
             let stiffest = fluids.map(FluidState::bulk_modulus).fold(0.0, f64::max);
-            let limit = SURFACE * cloud.kernel.smoothing_length() * (density / stiffest).sqrt();
-            step.limits.propose(limit, format_args!("pressure of the fluid on the light `{name}`"));
+            let own = self.steps.iter().find(|(id, _)| *id == group.body).map_or(SURFACE, |(_, step)| *step);
+            let limit = own * cloud.kernel.smoothing_length() * (density / stiffest).sqrt();
+            step.limits.propose(limit, format_args!("pressure of the fluid on `{name}`"));
         }
         Ok(exchange)
     }

@@ -5,8 +5,8 @@
 //! particle interacts with the copy of its side, with the whole thickness of the body. The side follows from
 //! the sign of n_j . x_ji, with the current normal n_j of the deformed body. Pairs of fluid particles through
 //! the body, in at one face and out at the other, are left out; those across the corner of a free end are
-//! not, as nothing would fill the part of the kernel that they do. Both are decided where the lists are built,
-//! in the same way for i and j, so that every force keeps its opposite.
+//! not, as nothing would fill the part of the kernel that they do. Both are decided where the lists are
+//! built, in the same way for i and j, so that every force keeps its opposite.
 
 use std::collections::BinaryHeap;
 use std::ops::Range;

@@ -248,8 +248,8 @@ fn momenta_are_kept_with_water_around_a_fin_on_a_block() {
     assert!(sim.ledger().relative_error().abs() < 2e-2, "{}", sim.ledger().relative_error());
 }
 
-/// A sheet, two particles thick, that ends in a liquid of one pressure, on one lattice with it: nothing moves,
-/// also where particles of both sides meet in front of the end.
+/// A sheet, two particles thick, that ends in a liquid of one pressure, on one lattice with it: nothing
+/// moves, also where particles of both sides meet in front of the end.
 #[test]
 fn a_liquid_around_the_end_of_a_sheet_stays_at_rest() {
     for (precision, formulation) in
