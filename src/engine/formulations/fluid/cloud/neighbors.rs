@@ -8,7 +8,7 @@ use crate::column;
 use crate::neighbors::NeighborError;
 use crate::parallel::sum_over_blocks;
 use crate::schedule::{Run, Step, StepError};
-use crate::world::{MissingColumn, World};
+use crate::world::{MissingColumn, Removed, World};
 
 column! {
     /// Position that the neighbour lists of a flow were built from: sums run in the order of the lists, and
@@ -28,6 +28,8 @@ pub struct Neighbors {
     built: Vec<DVec3>,
     /// Number of builds since the particles were sorted.
     builds: u64,
+    /// Number of particles of thin bodies that had been removed when the lists were built.
+    removed: u64,
     sorter: Sorter,
 }
 
@@ -45,6 +47,19 @@ impl FlowCloud {
         }
         self.find_halo();
         Ok(())
+    }
+
+    /// Takes removed particles out of thin bodies, which hide nothing any more, and says how many they are.
+    fn take_out_of_thin_bodies(&mut self, world: &World) -> Result<u64, MissingColumn> {
+        let mut sum = 0;
+        for thin in &mut self.pairs.thin {
+            let group = self.groups.iter().find(|group| group.cloud == thin.copies[0]);
+            if let Some(group) = group {
+                let removed = world.phase(group.phase).read::<Removed>()?;
+                sum += thin.take_out(&removed[group.rows.clone()]);
+            }
+        }
+        Ok(sum)
     }
 
     /// Whether loops are no longer divided as they were when the lists were built.
@@ -81,6 +96,8 @@ impl Run for Neighbors {
         cloud.forget_loads();
         cloud.divide_boundaries(step.world);
         let is_known_otherwise = cloud.decide_for_step(step.world)?;
+        let removed = cloud.take_out_of_thin_bodies(step.world)?;
+        let is_worn = std::mem::replace(&mut self.removed, removed) != removed;
         let failed = |error: NeighborError| StepError::System {
             system: NEIGHBORS.to_owned(),
             message: error.to_string(),
@@ -96,7 +113,7 @@ impl Run for Neighbors {
         // After that, because lists leave the places that they are built from in the packed rows.
         let moved = cloud.pack(step.world)?;
         let FlowCloud { pairs, records, fluid, .. } = &mut *cloud;
-        if pairs.are_stale(records, *fluid, moved, &self.built) {
+        if pairs.are_stale(records, *fluid, moved, &self.built) || is_worn {
             cloud.read_positions(step.world, &mut self.built)?;
             if self.builds >= BUILDS && self.sorter.sort(&cloud, &self.built, step.world) {
                 self.builds = 0;
@@ -115,12 +132,14 @@ impl Run for Neighbors {
     }
 
     fn save(&self) -> Vec<u8> {
-        self.builds.to_le_bytes().to_vec()
+        [self.builds, self.removed].iter().flat_map(|count| count.to_le_bytes()).collect()
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        let Ok(builds) = state.try_into() else { return false };
-        self.builds = u64::from_le_bytes(builds);
+        let Some((builds, rest)) = state.split_first_chunk() else { return false };
+        let Ok(removed) = rest.try_into() else { return false };
+        self.builds = u64::from_le_bytes(*builds);
+        self.removed = u64::from_le_bytes(removed);
         // Before the first step there are no lists.
         self.is_restored = self.builds > 0;
         true

@@ -123,7 +123,13 @@ impl Particles<'_> {
     ) {
         let (total, [friction, pressure]) = self.force_now(i);
         let moved = self.before.get(i).map_or(DVec3::ZERO, |before| self.records[i].position() - *before);
-        let late = 0.5 * self.dt * velocity;
+        let late = if self.removed[i] == Removed::NO {
+            0.5 * self.dt * velocity
+        } else {
+            // What has gone in this step took the frozen force in all of it along, the fluid in its half.
+            sum.removed -= 0.5 * rows.frozen[k].0.dot(moved);
+            0.5 * moved
+        };
         let change = self.change(i, k, rows);
         if let Some(drag) = &mut rows.drag {
             let moving = if self.dt > 0.0 { moved / self.dt } else { velocity };

@@ -23,6 +23,8 @@ pub struct Exchange {
     pub kinetic: f64,
     /// Work of constraints.
     pub constraints: f64,
+    /// Correction of the energy that removed particles took along.
+    pub removed: f64,
     /// Work of the parts of the force over the long step.
     pub parts: [f64; PARTS],
 }
@@ -31,6 +33,7 @@ impl BlockSum for Exchange {
     fn add(&mut self, next: &Self) {
         self.kinetic += next.kinetic;
         self.constraints += next.constraints;
+        self.removed += next.removed;
         (0..PARTS).for_each(|part| self.parts[part] += next.parts[part]);
     }
 }

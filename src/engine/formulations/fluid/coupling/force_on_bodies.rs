@@ -20,6 +20,7 @@ use crate::formulations::fluid::moments::SurfaceMoments;
 use crate::formulations::fluid::passes::{friction_on, reads_flow};
 use crate::parallel::{Lanes4, for_each_block};
 use crate::plugin::SimBuilder;
+use crate::removal::REMOVED_ENERGY;
 use crate::rigid::{RIGID_BODIES, RigidBodies};
 use crate::schedule::{AccountKind, Adds, Mode, Run, Stage, Step, StepError, System};
 use crate::world::{BodyId, BodySet, Force, Mass, Mobility, PhaseId, Position, Removed, Velocity};
@@ -248,6 +249,10 @@ impl Run for Coupling {
             let constraints = step.ledger.account("constraints", AccountKind::Supplied);
             step.ledger.add(kinetic, group.body, exchange.kinetic);
             step.ledger.add(constraints, group.body, exchange.constraints + belt);
+            if exchange.removed != 0.0 {
+                let removed = step.ledger.account(REMOVED_ENERGY, AccountKind::Dissipated);
+                step.ledger.add(removed, group.body, exchange.removed);
+            }
             for (name, work) in ACCOUNTS.iter().zip(exchange.parts) {
                 let account = step.ledger.account(name, AccountKind::Dissipated);
                 step.ledger.add(account, group.body, -work);

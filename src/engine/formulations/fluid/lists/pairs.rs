@@ -45,7 +45,7 @@ pub struct FlowPairs {
     /// How much particles that are near each other can at least still move against each other, m.
     remaining_skin: f64,
     /// Bodies whose sides do not see each other.
-    thin: Vec<ThinBody>,
+    pub thin: Vec<ThinBody>,
     /// Number of builds.
     pub builds: u64,
     /// Whether the ranks have been asked, since then, to divide boundaries by the fluid beside them.

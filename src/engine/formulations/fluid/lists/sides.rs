@@ -16,6 +16,7 @@ use glam::DVec3;
 use super::thickness::{Thickness, axes};
 use crate::neighbors::{NeighborList, Periodic};
 use crate::plugin::BodyPlan;
+use crate::world::Removed;
 
 /// A line between two particles crosses a body within this distance of one of its particles, over their
 /// spacing.
@@ -28,8 +29,14 @@ pub struct ThinBody {
     pub copies: [Range<usize>; 2],
     spacing: f64,
     frames: Vec<SurfaceFrame>,
-    /// Whether a particle is on the face to the side of the normal, and on the other.
+    /// Whether a particle is on the face to the side of the normal, and on the other; neither if it has been
+    /// removed.
     faces: Vec<[bool; 2]>,
+    /// Whether a particle has been removed.
+    removed: Vec<bool>,
+    /// Initial positions, m, and neighbours in the thin parts.
+    sites: Vec<DVec3>,
+    neighbors: NeighborList,
 }
 
 /// Neighbours before and behind a particle along the two directions of the mid-surface, as numbers in the
@@ -72,14 +79,38 @@ impl ThinBody {
             frames.push(frame);
         }
         orient(&mut frames, &normals, &list);
-        let spacing = body.spacing;
-        let faces = (0..sites.len()).map(|i| {
+        let (faces, removed) = (vec![[false; 2]; sites.len()], vec![false; sites.len()]);
+        let mut thin = Self { copies, spacing: body.spacing, frames, faces, removed, sites, neighbors: list };
+        thin.find_faces();
+        thin
+    }
+
+    /// Takes note of the particles that have been removed, and says how many they are. What was below them is
+    /// the face now.
+    pub fn take_out(&mut self, removed: &[Removed]) -> u64 {
+        let known = self.removed.iter_mut().zip(removed);
+        let changes = known.map(|(known, now)| std::mem::replace(known, *now != Removed::NO) != *known);
+        if changes.fold(false, |any, change| any | change) {
+            self.find_faces();
+        }
+        self.removed.iter().map(|&removed| u64::from(removed)).sum()
+    }
+
+    /// Finds the particles on the faces: no neighbour is straight above them, or below.
+    fn find_faces(&mut self) {
+        let Self { spacing, frames, faces, removed, sites, neighbors, .. } = self;
+        for (i, faces) in faces.iter_mut().enumerate() {
+            *faces = [!removed[i]; 2];
             let normal = frames[i].normal(|k| sites[k]).normalize_or_zero();
-            let neighbors = list.row(i).iter().map(|&j| sites[j as usize] - sites[i]);
-            faces(normal, neighbors, spacing)
-        });
-        let faces = faces.collect();
-        Self { copies, spacing, frames, faces }
+            for &j in neighbors.row(i).iter().filter(|&&j| !removed[j as usize]) {
+                let x = sites[j as usize] - sites[i];
+                let height = x.dot(normal);
+                if (x - height * normal).length() < REACH * *spacing {
+                    faces[0] &= height < 0.5 * *spacing;
+                    faces[1] &= height > -0.5 * *spacing;
+                }
+            }
+        }
     }
 
     /// Normal at particle `k`, of any length, from the positions of the cloud.
@@ -93,20 +124,6 @@ impl SurfaceFrame {
         let between = |[from, to]: [u32; 2]| position(to as usize) - position(from as usize);
         self.sign * between(self.along).cross(self.across.map_or(DVec3::Z, between))
     }
-}
-
-/// Whether a particle with these neighbours is on the faces to both sides of a thin body: no neighbour is
-/// straight above it, or below.
-fn faces(normal: DVec3, neighbors: impl Iterator<Item = DVec3>, spacing: f64) -> [bool; 2] {
-    let mut faces = [true; 2];
-    for x in neighbors {
-        let height = x.dot(normal);
-        if (x - height * normal).length() < REACH * spacing {
-            faces[0] &= height < 0.5 * spacing;
-            faces[1] &= height > -0.5 * spacing;
-        }
-    }
-    faces
 }
 
 /// Turns the normals of neighbours to one side: from each particle that is known to the one that is most

@@ -8,12 +8,13 @@ use super::{column, double, simulation};
 use crate::formulations::fluid::{FlowCloud, NearPairs, RowPass, RowSums};
 use crate::parallel::{Arithmetic, Vector};
 use crate::simulation::Simulation;
-use crate::world::{Force, Mass, Position, Velocity};
+use crate::world::{BodyId, Force, Mass, Position, Removed, Velocity};
 
-/// Two tanks side by side with a sheet between them, `layers` particles of 0.01 m thick; water at rest in the
+/// Two tanks side by side with a sheet between them, `layers` particles of the water thick and at least two
+/// of its own; water at rest in the
 /// left one and, with its own pressure, in the right one.
 fn tanks(precision: &str, layers: usize, right: f64, rest: &str) -> Simulation {
-    let edge = 0.2 + 0.01 * layers as f64;
+    let (edge, spacing) = (0.2 + 0.01 * layers as f64, 0.005 * layers.min(2) as f64);
     simulation(&format!(
         r#"(precision: {precision}, dimension: Two, materials: {{"water": Fluid(density: 1000.0, sound_speed: 20.0),
                 "rubber": NeoHookean(density: 1100.0, young: 1.0e6, poisson: 0.3)}},
@@ -22,7 +23,7 @@ fn tanks(precision: &str, layers: usize, right: f64, rest: &str) -> Simulation {
                  shape: Box(min: (0, 0), max: (0.2, 0.3))),
                 (name: "right", material: "water", spacing: 0.01, formulation: Fluid(pressure: "{right}"),
                  shape: Box(min: ({edge}, 0), max: ({}, 0.3))),
-                (name: "sheet", material: "rubber", spacing: 0.01, {rest}
+                (name: "sheet", material: "rubber", spacing: {spacing}, {rest}
                  shape: Box(min: (0.2, -0.1), max: ({edge}, 0.4))),
             ],
             conditions: [InitialVelocity(on: Select(body: "left"), value: ("0.2*sin(20*y)", "0.1")),
@@ -67,6 +68,32 @@ fn water_does_not_see_water_through_a_sheet() {
         let mut two = [pressure(2), pressure(3)];
         two.sort_by(f64::total_cmp);
         assert!((two[0] - 500.0).abs() < 20.0 && (two[1] - 2000.0).abs() < 20.0, "{two:?}");
+    }
+}
+
+/// Where particles of a sheet have been removed, water sees water.
+#[test]
+fn water_sees_water_through_a_hole_in_a_sheet() {
+    for precision in ["Double", "Mixed"] {
+        let mut sim = tanks(precision, 1, 2000.0, "formulation: TotalLagrangian,");
+        let through = |sim: &Simulation| {
+            let cloud = sim.resources().get::<FlowCloud>();
+            let (left, right) = (cloud.groups[0].cloud.clone(), cloud.groups[1].cloud.clone());
+            let pairs = left.flat_map(|i| cloud.near_row(i).to_vec().into_iter().map(move |j| (i, j)));
+            let pairs = pairs.filter(|(_, j)| right.contains(&(*j as usize)));
+            pairs.map(|(i, _)| cloud.records[i].position().y).collect::<Vec<_>>()
+        };
+        sim.run(|sim| sim.clock().step < 1).expect("a start");
+        assert!(through(&sim).is_empty(), "{precision}");
+        {
+            let (view, rows) = sim.world().body_view(BodyId(2));
+            let x = view.read::<Position>().expect("places");
+            let mut removed = view.write::<Removed>().expect("a column");
+            rows.filter(|&row| (0.1..0.2).contains(&x[row].0.y)).for_each(|row| removed[row] = Removed::YES);
+        }
+        sim.run(|sim| sim.clock().step < 2).expect("a step");
+        let seen = through(&sim);
+        assert!(seen.len() >= 10 && seen.iter().all(|y| (0.09..0.21).contains(y)), "{precision}: {seen:?}");
     }
 }
 
