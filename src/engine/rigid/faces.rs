@@ -25,19 +25,26 @@ pub(super) struct NearestFaces<'a> {
     /// Ways to places beside a particle, each of which is nearest to one face: in none of them two faces of a
     /// corner are alike.
     beside: Vec<DVec3>,
+    /// More of them, so that each face of a corner has some inside of the body that are nearest to it.
+    around: Vec<DVec3>,
 }
 
 impl<'a> NearestFaces<'a> {
     /// Of a surface about particles of that spacing, m.
     pub fn new(surface: &'a dyn Surface, spacing: f64, dimension: Dimension) -> Self {
-        let (skew, axes): (DQuat, &[i8]) = match dimension {
-            Dimension::Two => (DQuat::from_rotation_z(0.3), &[0]),
-            Dimension::Three => (DQuat::from_euler(glam::EulerRot::XYZ, 0.3, 0.2, 0.5), &[-1, 0, 1]),
+        let skew = match dimension {
+            Dimension::Two => DQuat::from_rotation_z(0.3),
+            Dimension::Three => DQuat::from_euler(glam::EulerRot::XYZ, 0.3, 0.2, 0.5),
         };
-        let plane = [-1, 0, 1].into_iter().flat_map(|x| [-1, 0, 1].map(|y| (x, y)));
-        let all = plane.flat_map(|(x, y)| axes.iter().map(move |&z| DVec3::from([x, y, z].map(f64::from))));
-        let beside = all.filter_map(DVec3::try_normalize).map(|way| ASIDE * spacing * (skew * way)).collect();
-        Self { surface, spacing, beside }
+        let ways = |count: i8| {
+            let axis = move || -count..=count;
+            let last = if dimension == Dimension::Two { 0..=0 } else { axis() };
+            let plane = axis().flat_map(move |x| axis().map(move |y| (x, y)));
+            let all = plane
+                .flat_map(move |(x, y)| last.clone().map(move |z| DVec3::from([x, y, z].map(f64::from))));
+            all.filter_map(DVec3::try_normalize).map(|way| ASIDE * spacing * (skew * way)).collect()
+        };
+        Self { surface, spacing, beside: ways(1), around: ways(2) }
     }
 
     /// The foot of a place on every face that it is nearest to, from the nearest point of the surface.
@@ -51,6 +58,22 @@ impl<'a> NearestFaces<'a> {
             }
         }
         faces
+    }
+
+    /// The outward normals of the faces that end at a point of an edge or a corner, zero where there are less
+    /// than three.
+    pub fn ending_at(&self, point: DVec3) -> [DVec3; 3] {
+        let (mut normals, mut count) = ([DVec3::ZERO; 3], 0);
+        for &way in &self.around {
+            let near = self.surface.closest(point + way);
+            // Outside, the edge itself may be nearest.
+            let is_new = normals.iter().all(|normal| normal.dot(near.normal) < SAME);
+            if near.signed_distance < 0.0 && is_new && count < normals.len() {
+                normals[count] = near.normal;
+                count += 1;
+            }
+        }
+        normals
     }
 
     /// The foot of a place on the flat face beyond the edge of the one that it is nearest to, if the place is
@@ -76,6 +99,32 @@ mod tests {
 
     use super::*;
     use crate::shapes::Shape;
+
+    #[test]
+    fn the_faces_that_end_at_edges_and_corners_are_found() {
+        let shape: Shape = ron::from_str("Box(min: (0, 0, 0), max: (0.2, 0.1, 0.1))").expect("a shape");
+        let surface = shape.surface(Dimension::Three, Path::new("."), "shape").expect("a surface");
+        let faces = NearestFaces::new(&*surface, 0.01, Dimension::Three);
+        for (x, y, z) in [(0.0, 0.0, 0.0), (0.2, 0.0, 0.1), (0.0, 0.1, 0.0), (0.2, 0.1, 0.1), (0.1, 0.1, 0.0)]
+        {
+            let outward = |at: f64, end: f64| {
+                if at == 0.0 {
+                    -1.0
+                } else if at == end {
+                    1.0
+                } else {
+                    0.0
+                }
+            };
+            let sides =
+                [(DVec3::X, outward(x, 0.2)), (DVec3::Y, outward(y, 0.1)), (DVec3::Z, outward(z, 0.1))];
+            let found = faces.ending_at(DVec3::new(x, y, z));
+            let expected: Vec<DVec3> =
+                sides.into_iter().filter(|(_, side)| *side != 0.0).map(|(axis, side)| axis * side).collect();
+            assert!(expected.iter().all(|normal| found.contains(normal)), "{x} {y} {z}: {found:?}");
+            assert_eq!(found.iter().filter(|normal| **normal != DVec3::ZERO).count(), expected.len());
+        }
+    }
 
     #[test]
     fn a_place_beside_a_corner_is_near_to_all_its_faces() {

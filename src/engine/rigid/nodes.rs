@@ -50,6 +50,9 @@ pub struct RigidNode {
     pub round: Round,
     /// Length that it represents, m.
     pub size: f64,
+    /// Outward normals of the flat faces that end at a point of an edge or a corner, zero where there are
+    /// fewer.
+    pub ending: [DVec3; 3],
 }
 
 impl RigidNode {
@@ -105,7 +108,8 @@ impl Nodes {
         dimension: Dimension,
     ) -> Self {
         let outline = Outline::of(shape);
-        let node = |point, feature, round, size| RigidNode { point, feature, round, size };
+        let node =
+            |point, feature, round, size| RigidNode { point, feature, round, size, ending: [DVec3::ZERO; 3] };
         if let Some((center, radius)) = sphere_of(shape) {
             let ball = node(center, Feature::Corner, Round::Ball(radius), 2.0 * radius);
             return Self { list: vec![ball], outline };
@@ -119,8 +123,11 @@ impl Nodes {
         let is_round = |x: DVec3| outline.is_some_and(|outline| outline.holds(x));
         let edges = surface.edges(spacing);
         let on_edges = along(&edges, spacing).into_iter().filter(|&(x, _)| !is_round(x));
-        list.extend(on_edges.map(|(x, feature)| node(x, feature, Round::Point, spacing)));
         let faces = NearestFaces::new(surface, spacing, dimension);
+        list.extend(on_edges.map(|(x, feature)| {
+            let ending = faces.ending_at(x);
+            RigidNode { ending, ..node(x, feature, Round::Point, spacing) }
+        }));
         for site in sites {
             let nearest = surface.closest(site.position);
             if nearest.signed_distance.abs() >= NEAR * spacing {

@@ -122,7 +122,7 @@ pub(in crate::contact) fn share_of_slope(edge: DVec3, normal: DVec3) -> (f64, DV
 }
 
 /// A weight that grows from zero to one with a value, whose derivative is given, and its own derivative.
-fn growing(value: f64, derivative: DVec3) -> (f64, DVec3) {
+pub(in crate::contact) fn growing(value: f64, derivative: DVec3) -> (f64, DVec3) {
     let is_partial = value > 0.0 && value < 1.0;
     (value.clamp(0.0, 1.0), if is_partial { derivative } else { DVec3::ZERO })
 }

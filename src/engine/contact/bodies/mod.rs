@@ -15,7 +15,7 @@ mod node_view;
 
 mod sides;
 
-pub(super) use crossing::{Crossing, RAMP, share_of_slope};
+pub(super) use crossing::{Crossing, RAMP, growing, share_of_slope};
 pub use error::CONTACT;
 pub(super) use error::failed;
 pub(super) use members::{BUMPS, MemberColumns, MemberParticles, Members};

@@ -52,6 +52,15 @@ impl NodeView<'_> {
         }
     }
 
+    /// Normals of the faces that end at a point of an edge or a corner of a rigid body, zero where there are
+    /// fewer.
+    pub fn ending(&self, i: usize) -> [DVec3; 3] {
+        match self {
+            Self::Particles(_) => [DVec3::ZERO; 3],
+            Self::Rigid(body) => body.nodes.list()[i].ending.map(|normal| body.state.rotation * normal),
+        }
+    }
+
     /// Whether a node takes part: a removed particle does not.
     pub fn is_there(&self, i: usize) -> bool {
         match self {

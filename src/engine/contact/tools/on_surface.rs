@@ -108,11 +108,12 @@ impl OnSurface<'_> {
         touches.then(|| {
             let share = match (&crossing, nodes.feature(i)) {
                 (Some(crossing), _) => Share::of_crossing(crossing, tool),
-                (None, Feature::Corner) => Share::WHOLE,
+                (None, Feature::Corner) => Share::WHOLE.beside_faces(nodes.ending(i), normal),
                 (None, Feature::Face(_)) => Share::on_face(&nearest, nodes.size(i), tool),
                 (None, Feature::Edge(e)) => {
                     let edge = tool.state.rotation.inverse() * nodes.turned(e);
-                    Share::on_edge(edge, &nearest, nodes.size(i), tool)
+                    let on_edge = Share::on_edge(edge, &nearest, nodes.size(i), tool);
+                    on_edge.beside_faces(nodes.ending(i), normal)
                 }
             };
             NodeTouch { x: center, shift: own_place - center, point: nearest.point, near, share }

@@ -20,12 +20,24 @@
 //! ```
 //!
 //! which is zero below the ridge between them, where the edge itself takes over.
+//!
+//! Points of edges and corners of a body come on top of those of its faces, which stand for their whole area
+//! already: while a face lies on another one they have a fifth of their weight, and all of it when the body
+//! stands on the edge.
 
 use glam::DVec3;
 
-use crate::contact::bodies::{Crossing, RAMP, share_of_slope};
+use crate::contact::bodies::{Crossing, RAMP, growing, share_of_slope};
 use crate::rigid::RigidBody;
 use crate::shapes::SurfacePoint;
+
+/// Weight of a point of an edge or a corner of a face that lies on another one: the points of the face
+/// already stand for its area up to there. It is not zero, so that a body that begins to rock turns about its
+/// edge.
+const ON_FACE: f64 = 0.2;
+/// Cosines of the angles between two faces that lie on each other, and from which on their edge counts whole:
+/// below 6 degrees points of the other surface do not touch what is beyond the edge (`RigidNode::faces`).
+const LYING: [f64; 2] = [1.0, 0.995];
 
 /// The share w of a node, its gradient, 1/m, and its derivative with a rotation of the body of the node
 /// against the surface.
@@ -68,6 +80,21 @@ impl Share {
             share: lying * inside,
             gradient: rotation * (lying * gradient),
             turning: rotation * (-inside * turning),
+        }
+    }
+
+    /// That of a point where faces of these outward normals end, on a surface of that normal.
+    pub fn beside_faces(self, ending: [DVec3; 3], normal: DVec3) -> Self {
+        let flattest = ending.into_iter().map(|own| (-own.dot(normal), own));
+        let (cosine, own) =
+            flattest.fold((0.0, DVec3::ZERO), |best, next| if next.0 > best.0 { next } else { best });
+        let range = LYING[0] - LYING[1];
+        let (standing, turning) = growing((LYING[0] - cosine) / range, own.cross(normal) / range);
+        let part = ON_FACE + (1.0 - ON_FACE) * standing;
+        Self {
+            share: part * self.share,
+            gradient: part * self.gradient,
+            turning: part * self.turning + self.share * (1.0 - ON_FACE) * turning,
         }
     }
 
