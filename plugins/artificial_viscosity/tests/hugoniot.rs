@@ -15,7 +15,7 @@ const SPEED: f64 = 3000.0;
 const LENGTH: f64 = 0.04;
 
 /// A block of aluminium with a negligible strength that hits a symmetry plane, in uniaxial strain.
-fn scene(formulation: &str) -> String {
+fn scene(formulation: &str, lattice: &str) -> String {
     let end = 0.7 * LENGTH / (SOUND_SPEED + SLOPE * SPEED);
     format!(
         r#"(dimension: Two,
@@ -23,7 +23,7 @@ fn scene(formulation: &str) -> String {
                          hardening: Perfect(yield_stress: 1.0e6),
                          eos: MieGrueneisen(sound_speed: {SOUND_SPEED:?}, slope: {SLOPE:?}, gamma: 2.0))}},
             bodies: [(name: "b", material: "m", shape: Box(min: (0, 0), max: ({LENGTH:?}, 0.004)), spacing: 0.0005,
-                      formulation: {formulation}, velocity: (-{SPEED:?}, 0),
+                      lattice: {lattice}, formulation: {formulation}, velocity: (-{SPEED:?}, 0),
                       plugins: [artificial_viscosity(beta: 2.0), hourglass_control()])],
             conditions: [Symmetry(plane: X, at: 0), Symmetry(plane: Y, at: 0), Symmetry(plane: Y, at: 0.004)],
             time: (end: {end:?}))"#
@@ -31,9 +31,9 @@ fn scene(formulation: &str) -> String {
 }
 
 /// Stress, Pa, and internal energy per reference volume, J/m3, in the middle of the shocked part.
-fn behind_the_shock(formulation: &str) -> (f64, f64) {
+fn behind_the_shock(formulation: &str, lattice: &str) -> (f64, f64) {
     let (scene, source) =
-        parse(Source::new("test.ron", scene(formulation))).unwrap_or_else(|e| panic!("{e}"));
+        parse(Source::new("test.ron", scene(formulation, lattice))).unwrap_or_else(|e| panic!("{e}"));
     let mut registry = Registry::standard();
     artificial_viscosity::register(&mut registry);
     hourglass_control::register(&mut registry);
@@ -56,9 +56,13 @@ fn the_state_behind_a_strong_shock_is_on_the_hugoniot_curve() {
     let stress = DENSITY * (SOUND_SPEED + SLOPE * SPEED) * SPEED;
     let energy = 0.5 * DENSITY * SPEED * SPEED;
     for formulation in ["TotalLagrangian()", "UpdatedLagrangian()", "Eulerian()"] {
-        let found = behind_the_shock(formulation);
-        // Without the heat the stress is 4 % and the energy 30 % too small.
-        assert!((found.0 / stress - 1.0).abs() < 0.012, "{formulation}: {} of {stress} Pa", found.0);
-        assert!((found.1 / energy - 1.0).abs() < 0.02, "{formulation}: {} of {energy} J/m3", found.1);
+        // On the last two a uniform pressure leaves forces on particles: the stress was up to 60 % too small.
+        for lattice in ["Regular", "Hexagonal", "Relaxed()"] {
+            let found = behind_the_shock(formulation, lattice);
+            let place = format!("{formulation}, {lattice}");
+            // Without the heat the stress is 4 % and the energy 30 % too small.
+            assert!((found.0 / stress - 1.0).abs() < 0.012, "{place}: {} of {stress} Pa", found.0);
+            assert!((found.1 / energy - 1.0).abs() < 0.02, "{place}: {} of {energy} J/m3", found.1);
+        }
     }
 }

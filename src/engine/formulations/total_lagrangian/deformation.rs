@@ -101,6 +101,7 @@ impl DeformationPass<'_> {
             hessian.take_stress(stress);
             run_hot(CorrectStress { stress, inverse_moment, stresses: &mut *stresses });
         });
+        block.brace(&rows);
         hessian.take_stiffness(&constitutive.folded(&mut rows, block, stresses));
         self.add_terms(constitutive, constitutive.folded(&mut rows, block, stresses), edges, &mut sum);
         let frame = self.frame;

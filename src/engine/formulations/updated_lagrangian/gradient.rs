@@ -88,6 +88,7 @@ impl UpdatedGradientPass<'_> {
             hessian.take_stress(stress);
             run_hot(CorrectStress { stress, inverse_moment, stresses: &mut *stresses });
         });
+        block.brace(&rows);
         hessian.take_stiffness(&constitutive.folded(&mut rows, block, stresses));
         if self.control.is_none() {
             constitutive.fold(&mut constitutive.folded(&mut rows, block, stresses), &mut sum);
