@@ -5,6 +5,7 @@ mod energy_growth;
 mod hourglass;
 mod passing;
 mod remedies;
+mod soft_under_pressure;
 mod system;
 mod wrong_sign;
 

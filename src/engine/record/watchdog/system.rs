@@ -5,6 +5,7 @@ use super::energy_growth::{EnergyGrowth, resolution};
 use super::hourglass::HourglassShare;
 use super::passing::PassingBodies;
 use super::remedies::Remedies;
+use super::soft_under_pressure::SoftUnderPressure;
 use super::wrong_sign::WrongSign;
 use crate::plugin::SimBuilder;
 use crate::schedule::Trigger;
@@ -25,6 +26,7 @@ struct Watchdog {
     hourglass: HourglassShare,
     wrong_sign: WrongSign,
     passing: PassingBodies,
+    soft: SoftUnderPressure,
     remedies: Remedies,
     domain: Option<DomainCheck>,
     /// Checks that end in a warning are made with the frames, but not with the first one: a body at rest has
@@ -42,6 +44,7 @@ pub fn add_system(sim: &mut SimBuilder<'_>) {
         hourglass: HourglassShare::new(sim),
         wrong_sign: WrongSign::new(sim),
         passing: PassingBodies::new(sim),
+        soft: SoftUnderPressure::new(sim),
         remedies: Remedies::new(sim),
         domain,
         frames: Trigger::after_interval(sim.scene().record_interval()),
@@ -70,6 +73,7 @@ impl Run for Watchdog {
                 self.hourglass.warn(step);
             }
             self.passing.look(step)?;
+            self.soft.look(step)?;
             self.wrong_sign.warn(step, &self.remedies, at_end);
         }
         Ok(())
@@ -81,17 +85,19 @@ impl Run for Watchdog {
             &self.hourglass,
             &self.wrong_sign,
             &self.passing.told,
+            &self.soft.told,
             self.frames,
         ))
         .unwrap_or_default()
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        let Ok((energy, hourglass, wrong_sign, passing, frames)) = postcard::from_bytes(state) else {
+        let Ok((energy, hourglass, wrong_sign, passing, soft, frames)) = postcard::from_bytes(state) else {
             return false;
         };
         (self.energy, self.hourglass, self.wrong_sign) = (energy, hourglass, wrong_sign);
         self.passing.told = passing;
+        self.soft.told = soft;
         self.frames.resume(frames);
         true
     }
