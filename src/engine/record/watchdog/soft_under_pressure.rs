@@ -34,7 +34,7 @@ pub(super) struct SoftUnderPressure {
 }
 
 impl SoftUnderPressure {
-    /// The solids of a scene with a reference configuration and an uneven lattice that are elastic or can fail.
+    /// The solids with a reference configuration and an uneven lattice that are elastic or can fail.
     pub fn new(sim: &SimBuilder<'_>) -> Self {
         let bodies: Vec<Soft> = sim.bodies().iter().filter_map(|body| soft(body, sim)).collect();
         Self { told: vec![false; bodies.len()], bodies }
