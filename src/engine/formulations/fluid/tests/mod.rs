@@ -32,6 +32,8 @@ mod thin;
 
 mod sub_cycled;
 
+mod slow;
+
 mod noticing;
 
 mod gaps;

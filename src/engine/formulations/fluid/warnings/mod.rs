@@ -12,6 +12,8 @@ mod passing;
 
 mod closed;
 
+mod spreading;
+
 mod stabilized;
 
 mod stretched;

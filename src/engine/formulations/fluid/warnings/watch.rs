@@ -13,6 +13,7 @@ use super::intrusion::Intrusion;
 use super::lost_volume::LostVolume;
 use super::no_gap_pressure;
 use super::passing::PassingWalls;
+use super::spreading::Spreading;
 use super::stabilized;
 use super::stretched;
 use super::tension::TensionWatch;
@@ -51,6 +52,7 @@ struct FlowWatch {
     stretched: Vec<bool>,
     unevenness: Unevenness,
     tension: TensionWatch,
+    spreading: Spreading,
     /// Compression, filling and unevenness are looked at with the frames.
     frames: Trigger,
     end: f64,
@@ -81,6 +83,7 @@ pub fn add(phases: Vec<PhaseId>, groups: &[Group], diffusion: Option<String>, si
         stretched: Vec::new(),
         unevenness: Unevenness::default(),
         tension: TensionWatch::new(groups, sim),
+        spreading: Spreading::new(sim),
         frames: Trigger::after_interval(sim.scene().record_interval()),
         end: sim.scene().time.end,
         is_started: false,
@@ -128,6 +131,7 @@ impl Run for FlowWatch {
             self.closed.look(at_end, &cloud, &mut self.scratch, step);
             self.unevenness.look(&cloud, &mut self.friction, step);
             self.tension.look(&cloud, &mut self.scratch, step);
+            self.spreading.look(at_end, &cloud, step);
         }
         if at_end {
             stabilized::look(&mut self.is_stabilized, &cloud, &mut self.scratch, step);
@@ -143,7 +147,7 @@ impl Run for FlowWatch {
         postcard::to_stdvec(&(
             told,
             bodies,
-            (&self.compression, &self.tension),
+            (&self.compression, &self.tension, &self.spreading.seen),
             (&self.filling, &self.lost_volume, &self.stretched),
             self.frames,
         ))
@@ -151,7 +155,7 @@ impl Run for FlowWatch {
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        let Ok((told, bodies, (compression, tension), (filling, lost, stretched), frames)) =
+        let Ok((told, bodies, (compression, tension, spreading), (filling, lost, stretched), frames)) =
             postcard::from_bytes(state)
         else {
             return false;
@@ -162,6 +166,7 @@ impl Run for FlowWatch {
         (self.is_stabilized, self.is_driven) = at_end;
         (self.intrusion.told, self.passing.told, self.unevenness.told) = told;
         (self.compression, self.filling, self.tension) = (compression, filling, tension);
+        self.spreading.seen = spreading;
         self.frames.resume(frames);
         true
     }
