@@ -77,6 +77,7 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     cloud.decide_what_others_know(WallShapes::are_asked_for(&groups, sim));
     let spin = cloud.viscosities.spin;
     advice::unfelt_walls(&walls, spin, sim);
+    advice::finer_walls(&walls, spin, sim.body(groups[0].body).spacing, sim);
     let (walls, touching, gravity) = (advice::walls(sim), sim.touching_pairs(), sim.gravity());
     advice::stiff_interface(&cloud, gravity, sim);
     sim.add_setup(move |setup| {

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use crate::formulations::fluid::cloud::{FlowCloud, Group};
 use crate::formulations::fluid::walls::{Slip, WallBody};
+use crate::notation::quantity;
 use crate::pair::PhaseTerms;
 use crate::plugin::{BodyKind, Setup, SimBuilder};
 use crate::rigid::{RigidBodies, RigidBody};
@@ -46,6 +47,27 @@ pub fn unfelt_walls(walls: &[WallBody], viscous: bool, sim: &mut SimBuilder<'_>)
     });
     let warnings: Vec<String> = unstated.chain(unfelt).collect();
     warnings.into_iter().for_each(|warning| sim.warn(warning));
+}
+
+/// Spacing of a wall over that of the fluid below which the fluid sticks to it too early.
+const FINE: f64 = 0.95;
+
+/// Warns of walls that are finer than the viscous fluid that sticks to them. The velocity of their particles
+/// is extrapolated as if it were in the lattice of the fluid: friction beside the surface is too large.
+pub fn finer_walls(walls: &[WallBody], viscous: bool, spacing: f64, sim: &mut SimBuilder<'_>) {
+    for wall in walls.iter().filter(|wall| viscous && wall.parameters.slip == Some(Slip::No)) {
+        let body = sim.body(wall.id);
+        if body.spacing < FINE * spacing {
+            let text = format!(
+                "the wall `{}` is finer than the viscous fluid that sticks to it, with a spacing of {} beside {}: the fluid sticks an eighth of its spacing before the surface \
+                 (the flux of a channel is 7 % too small where it is 10 particles wide, 5 % at 20), and shifting presses it off the wall; give the wall the spacing of the fluid",
+                body.name,
+                quantity(body.spacing, "m"),
+                quantity(spacing, "m"),
+            );
+            sim.warn(text);
+        }
+    }
 }
 
 /// Smoothing length over spacing below which waves on an interface of two liquids are slow to grow and quick

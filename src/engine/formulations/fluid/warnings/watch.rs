@@ -120,6 +120,7 @@ impl Run for FlowWatch {
             self.intrusion.look(&cloud, step)?;
             self.passing.look(step)?;
             half_space::look(&mut self.is_through, &cloud, self.spacing, step);
+            self.spreading.look(at_end, &cloud, step);
         }
         if is_frame {
             self.held_down.look(&cloud, step)?;
@@ -131,7 +132,6 @@ impl Run for FlowWatch {
             self.closed.look(at_end, &cloud, &mut self.scratch, step);
             self.unevenness.look(&cloud, &mut self.friction, step);
             self.tension.look(&cloud, &mut self.scratch, step);
-            self.spreading.look(at_end, &cloud, step);
         }
         if at_end {
             stabilized::look(&mut self.is_stabilized, &cloud, &mut self.scratch, step);
