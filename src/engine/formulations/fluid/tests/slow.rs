@@ -3,9 +3,9 @@
 use super::simulation;
 use crate::rigid::RigidBodies;
 
-/// A block that a force drives along a closed channel, half as high as the channel: its velocity at the end, and
-/// whether the run says that pressure has not spread. The time of spreading,
-/// 0.1 (L / 2)^2 3 nu / (c^2 H^2), is 0.9 s at 1 m/s.
+/// A block that a force drives along a closed channel, half as high as the channel: its velocity at the end,
+/// and whether the run says that pressure has not spread. The time of spreading,
+/// `0.1 L^2 3 nu / (c^2 H^2)` with the half width H, is 1.2 s at 1 m/s and 0.015 s at 9 m/s.
 fn driven_block(sound: f64) -> (f64, bool) {
     let mut sim = simulation(&format!(
         r#"(dimension: Two,

@@ -1,11 +1,11 @@
 //! Warning of slow flows that end before their pressure has spread.
 //!
-//! In a gap of thickness h the pressure of a slow flow spreads by diffusion, with c^2 h^2 / (12 nu). Until it has
-//! crossed the gap, a body that should push the liquid past itself or ahead of it compresses it instead, and
-//! moves too easily, however small the Mach number and the changes of density are. Part of the work on the flow
-//! is then stored as energy of compression. It is as large as a quarter while pressure spreads, and falls as
-//! exp(-t / T) afterwards, when friction dissipates all of the work. So the criterion is the change of
-//! that energy in the second half of the run over the dissipation in the same time.
+//! In a gap of thickness h the pressure of a slow flow spreads by diffusion, with c^2 h^2 / (12 nu). Until it
+//! has crossed the gap, a body that should push the liquid past itself or ahead of it compresses it instead,
+//! and moves too easily, however small the Mach number and the changes of density are. Part of the work on
+//! the flow is then stored as energy of compression, as much as a third of what friction dissipates, and
+//! nothing once pressure has spread. So the criterion is the change of that energy in the second half of the
+//! run over the dissipation in the same time.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -99,8 +99,8 @@ impl BlockSum for PressureSums {
     }
 }
 
-/// Energy of compression by the pressure that differs from that at rest, and by all that varies, J. A pressure
-/// that is the same everywhere drives no flow.
+/// Energy of compression by the pressure that differs from that at rest, and by all that varies, J. A
+/// pressure that is the same everywhere drives no flow.
 fn stored(cloud: &FlowCloud, gravity: DVec3) -> (f64, f64) {
     cloud.groups.iter().map_while(|group| Some((group, group.fluid()?))).fold(
         (0.0, 0.0),
