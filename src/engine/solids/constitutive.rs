@@ -227,8 +227,8 @@ thread_local! {
 }
 
 /// Share of the pressure in [`SolidBlock::brace`]. Behind a shock of 6 GPa in a relaxed lattice the stress is
-/// 6.3 % too small without it, 3.0, 1.7, 1.0 and 0.4 % with 0.1, 0.2, 0.35 and 1; Taylor bars of copper, where
-/// the pressure is some times the flow stress, are narrower at their foot by 0.0, 0.2, 0.7 and 2.4 %.
+/// 6.3 % too small without it, 3.0, 1.7, 1.0 and 0.4 % with 0.1, 0.2, 0.35 and 1; Taylor bars of copper,
+/// where the pressure is some times the flow stress, are narrower at their foot by 0.0, 0.2, 0.7 and 2.4 %.
 const BRACE: f64 = 0.2;
 
 impl SolidBlock {
