@@ -1,8 +1,8 @@
 //! The sweep: every plugin of fluids at its default on every shipped flow.
 //!
 //! Each plugin is added to those that the scene gives its fluids, or replaces the one of its name. The checks
-//! hold for every flow: the volume of the fluid, the signs of the accounts, and that nothing is inside of a
-//! wall.
+//! hold for every flow: the volume of the fluid, which fills what is worn off solids, the signs of the
+//! accounts, and that nothing is inside of a wall.
 
 use anyhow::{Context, Result};
 use meshless_engine::assembly;
@@ -12,6 +12,7 @@ use meshless_engine::plugin::{BodyKind, Registry};
 use meshless_engine::scene::{self, BodyDescription, Source};
 use meshless_engine::schedule::{Account, AccountKind};
 use meshless_engine::simulation::Simulation;
+use meshless_engine::world::{BodyId, ReferenceVolume, Removed};
 
 use crate::case::Case;
 use crate::check::Check;
@@ -108,7 +109,8 @@ fn run(registry: &Registry, flow: &str, source: Source, plugin: &str, steps: u64
     let at_start = volumes(&simulation);
     simulation.run(|simulation| simulation.clock().step < steps)?;
     let at_end = volumes(&simulation);
-    let change = |k: usize| (at_end[k] / at_start[k] - 1.0).abs();
+    let filled = [worn_volume(&simulation)?, 0.0];
+    let change = |k: usize| ((at_end[k] - filled[k]) / at_start[k] - 1.0).abs();
     let name = |what: &str| format!("{flow} with {plugin}: {what}");
     let [accounts, walls] = given(&simulation);
     Ok([
@@ -173,6 +175,19 @@ fn volumes(simulation: &Simulation) -> [f64; 2] {
         }
     }
     [volume, filled / count]
+}
+
+/// Volume of the particles removed from what does not flow, m3.
+fn worn_volume(simulation: &Simulation) -> Result<f64> {
+    let (world, cloud) = (simulation.world(), simulation.resources().get::<FlowCloud>());
+    let flows = |id: BodyId| cloud.groups.iter().any(|group| group.body == id && group.fluid().is_some());
+    let mut sum = 0.0;
+    for id in (0..world.bodies().len()).map(BodyId).filter(|&id| !flows(id)) {
+        let (view, rows) = world.body_view(id);
+        let (volume, removed) = (view.read::<ReferenceVolume>()?, view.read::<Removed>()?);
+        sum += rows.filter(|&row| removed[row] != Removed::NO).map(|row| volume[row].0).sum::<f64>();
+    }
+    Ok(sum)
 }
 
 /// Maximum energy supplied by an account of dissipation, and by walls, over the largest account. Walls push

@@ -207,13 +207,22 @@ const ENCLOSED: f64 = 0.1;
 /// Distance of the nearest of them beyond which it is not among them, over their spacing; the middle of a
 /// square is 0.71 away.
 const AMONG: f64 = 0.75;
+/// Distance of a removed particle within which a fluid particle is in its place, over their spacing: the
+/// sides of a crack come together again.
+const IN_PLACE: f64 = 1.5;
 
-/// Whether the particles of a body that are left surround a fluid particle.
+/// Whether the particles of a body that are left surround a fluid particle, away from those removed.
 fn is_enclosed(cloud: &FlowCloud, i: usize, near: &[u32], spacing: f64) -> bool {
     let from = cloud.records[i].position();
     let (mut sum, mut total, mut nearest) = (DVec3::ZERO, 0.0, f64::INFINITY);
-    for other in near.iter().map(|&j| &cloud.records[j as usize]).filter(|other| other.volume() > 0.0) {
+    for other in near.iter().map(|&j| &cloud.records[j as usize]) {
         let x = cloud.offset(from, other.position());
+        if other.volume() <= 0.0 {
+            if x.length() < IN_PLACE * spacing {
+                return false;
+            }
+            continue;
+        }
         let weight = other.volume() * cloud.kernel.weight(x.length());
         sum += weight * x;
         total += weight * x.length();
