@@ -25,7 +25,7 @@ pub(super) struct NearestFaces<'a> {
     /// Ways to places beside a particle, each of which is nearest to one face: in none of them two faces of a
     /// corner are alike.
     beside: Vec<DVec3>,
-    /// More of them, so that each face of a corner has some inside of the body that are nearest to it.
+    /// More of them, so that each face of a sharp corner has some inside of the body that are nearest to it.
     around: Vec<DVec3>,
 }
 
@@ -44,7 +44,8 @@ impl<'a> NearestFaces<'a> {
                 .flat_map(move |(x, y)| last.clone().map(move |z| DVec3::from([x, y, z].map(f64::from))));
             all.filter_map(DVec3::try_normalize).map(|way| ASIDE * spacing * (skew * way)).collect()
         };
-        Self { surface, spacing, beside: ways(1), around: ways(2) }
+        let around = ways(if dimension == Dimension::Two { 8 } else { 3 });
+        Self { surface, spacing, beside: ways(1), around }
     }
 
     /// The foot of a place on every face that it is nearest to, from the nearest point of the surface.
@@ -60,10 +61,10 @@ impl<'a> NearestFaces<'a> {
         faces
     }
 
-    /// The outward normals of the faces that end at a point of an edge or a corner, zero where there are less
-    /// than three.
-    pub fn ending_at(&self, point: DVec3) -> [DVec3; 3] {
-        let (mut normals, mut count) = ([DVec3::ZERO; 3], 0);
+    /// The outward normals of the faces that end at a point of an edge or a corner, of four at most, zero
+    /// where there are fewer.
+    pub fn ending_at(&self, point: DVec3) -> [DVec3; 4] {
+        let (mut normals, mut count) = ([DVec3::ZERO; 4], 0);
         for &way in &self.around {
             let near = self.surface.closest(point + way);
             // Outside, the edge itself may be nearest.

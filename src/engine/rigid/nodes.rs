@@ -52,7 +52,7 @@ pub struct RigidNode {
     pub size: f64,
     /// Outward normals of the flat faces that end at a point of an edge or a corner, zero where there are
     /// fewer.
-    pub ending: [DVec3; 3],
+    pub ending: [DVec3; 4],
 }
 
 impl RigidNode {
@@ -109,7 +109,7 @@ impl Nodes {
     ) -> Self {
         let outline = Outline::of(shape);
         let node =
-            |point, feature, round, size| RigidNode { point, feature, round, size, ending: [DVec3::ZERO; 3] };
+            |point, feature, round, size| RigidNode { point, feature, round, size, ending: [DVec3::ZERO; 4] };
         if let Some((center, radius)) = sphere_of(shape) {
             let ball = node(center, Feature::Corner, Round::Ball(radius), 2.0 * radius);
             return Self { list: vec![ball], outline };

@@ -255,7 +255,7 @@ impl SolidBlock {
             if strength.is_finite() {
                 let kirchhoff =
                     stress.x_axis.dot(f.x_axis) + stress.y_axis.dot(f.y_axis) + stress.z_axis.dot(f.z_axis);
-                let pressure = (kirchhoff / (3.0 * f.determinant())).abs();
+                let pressure = -kirchhoff / (3.0 * f.determinant());
                 *strength = strength.max(BRACE * share * pressure);
             }
         }

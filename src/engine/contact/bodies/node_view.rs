@@ -54,9 +54,9 @@ impl NodeView<'_> {
 
     /// Normals of the faces that end at a point of an edge or a corner of a rigid body, zero where there are
     /// fewer.
-    pub fn ending(&self, i: usize) -> [DVec3; 3] {
+    pub fn ending(&self, i: usize) -> [DVec3; 4] {
         match self {
-            Self::Particles(_) => [DVec3::ZERO; 3],
+            Self::Particles(_) => [DVec3::ZERO; 4],
             Self::Rigid(body) => body.nodes.list()[i].ending.map(|normal| body.state.rotation * normal),
         }
     }

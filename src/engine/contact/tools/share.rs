@@ -84,7 +84,7 @@ impl Share {
     }
 
     /// That of a point where faces of these outward normals end, on a surface of that normal.
-    pub fn beside_faces(self, ending: [DVec3; 3], normal: DVec3) -> Self {
+    pub fn beside_faces(self, ending: [DVec3; 4], normal: DVec3) -> Self {
         let flattest = ending.into_iter().map(|own| (-own.dot(normal), own));
         let (cosine, own) =
             flattest.fold((0.0, DVec3::ZERO), |best, next| if next.0 > best.0 { next } else { best });

@@ -54,14 +54,15 @@ impl SoftUnderPressure {
             let squeezed = |row: usize, limit: f64| {
                 let (f, p) = (f[row].0, stress[row].0);
                 let trace = p.x_axis.dot(f.x_axis) + p.y_axis.dot(f.y_axis) + p.z_axis.dot(f.z_axis);
-                let pressure = trace.abs() / (3.0 * f.determinant().abs());
+                let pressure = -trace / (3.0 * f.determinant());
                 removed[row] == Removed::NO && pressure > limit * body.young
             };
             let failed =
                 rows.clone().filter(|&row| has_failed(row) && squeezed(row, RATIO_OF_FAILED)).count();
             let intact = rows.clone().filter(|&row| !has_failed(row) && squeezed(row, RATIO)).count();
             let elastic = if body.flows { 0 } else { intact };
-            let share = |count: usize| count as f64 / rows.len() as f64;
+            let present = rows.clone().filter(|&row| removed[row] == Removed::NO).count().max(1);
+            let share = |count: usize| count as f64 / present as f64;
             let (count, what, ratio) = if share(elastic) > SHARE {
                 (elastic, "", RATIO)
             } else if share(failed) > SHARE {
@@ -72,7 +73,7 @@ impl SoftUnderPressure {
             *told = true;
             step.warnings.push(format!(
                 "{:.0} % of the particles of body `{}`{what} are under a pressure of more than {ratio} times Young's modulus, and its \
-                 lattice is not even: particles give way, and the pressure falls short; use `lattice: Regular` or `formulation: Eulerian()`",
+                 lattice is not even: particles give way, and the pressure falls short; use `formulation: Eulerian()`, or `lattice: Regular`, with curved sides `BodyFitted()`",
                 100.0 * share(count),
                 step.world.body(body.id).name
             ));
@@ -82,12 +83,14 @@ impl SoftUnderPressure {
 }
 
 fn soft(body: &BodyPlan, sim: &SimBuilder<'_>) -> Option<Soft> {
-    let is_even = sim.scene().bodies[body.id.0].lattice == Lattice::Regular;
-    if body.kind != BodyKind::Solid || !body.offers(Offer::FoldedTerms) || is_even {
+    // Inside, the others are even.
+    let is_uneven =
+        matches!(sim.scene().bodies[body.id.0].lattice, Lattice::Hexagonal | Lattice::Relaxed { .. });
+    if body.kind != BodyKind::Solid || !body.offers(Offer::FoldedTerms) || !is_uneven {
         return None;
     }
     let law = body.solid_law().ok()?;
-    let flows = law.initial_yield_stress().is_some();
+    let flows = law.initial_yield_stress().is_some_and(f64::is_finite);
     (!flows || body.can_fail()).then(|| Soft { id: body.id, young: law.elastic().young, flows })
 }
 

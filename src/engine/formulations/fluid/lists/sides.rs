@@ -21,6 +21,8 @@ use crate::world::Removed;
 /// A line between two particles crosses a body within this distance of one of its particles, over their
 /// spacing.
 const REACH: f64 = 0.8;
+/// Difference of two distances that is round-off, over the spacing.
+const EQUAL: f64 = 1e-9;
 
 /// A thin body and its two copies in the cloud.
 #[derive(Clone, Debug)]
@@ -46,6 +48,8 @@ struct SurfaceFrame {
     along: [u32; 2],
     /// None in two dimensions, where the other direction is that of z.
     across: Option<[u32; 2]>,
+    /// The two directions in the initial configuration, over the spacing, 1/m.
+    directions: [DVec3; 2],
     /// One or minus one, so that normals of neighbours point to one side.
     sign: f64,
 }
@@ -54,46 +58,47 @@ impl ThinBody {
     /// The body with its copies in the cloud; `thickness` is that without periods.
     pub fn new(body: &BodyPlan, copies: [Range<usize>; 2], thickness: Thickness, plane: bool) -> Self {
         let sites: Vec<DVec3> = body.sites.iter().map(|site| site.position).collect();
-        let support = thickness.support;
         let thin = thickness.thin_parts();
         let mut list = thickness.neighbors;
         // Where the body is thick it has no mid-surface, normals are zero, and all sides see the first copy.
         list.retain(|i, j| thin[i] && thin[j as usize]);
-        let mut frames = Vec::with_capacity(sites.len());
-        let mut normals = Vec::with_capacity(sites.len());
-        for i in 0..sites.len() {
-            let axes = axes(list.row(i).iter().map(|&j| sites[j as usize] - sites[i]), plane);
-            let farthest = |direction: DVec3| {
-                let lead = |j: u32| (sites[j as usize] - sites[i]).dot(direction);
-                let better =
-                    |best: u32, &j: &u32| if lead(j) > lead(best) + 1e-9 * support { j } else { best };
-                list.row(i).iter().fold(i as u32, better)
-            };
-            let pair = |axis: DVec3| [farthest(-axis), farthest(axis)];
-            let frame = SurfaceFrame {
-                along: pair(axes.col(1)),
-                across: (!plane).then(|| pair(axes.col(2))),
-                sign: 1.0,
-            };
-            normals.push(frame.normal(|k| sites[k]));
-            frames.push(frame);
-        }
+        let mut frames: Vec<SurfaceFrame> = (0..sites.len())
+            .map(|i| {
+                let axes = axes(list.row(i).iter().map(|&j| sites[j as usize] - sites[i]), plane);
+                SurfaceFrame {
+                    along: [i as u32; 2],
+                    across: (!plane).then_some([i as u32; 2]),
+                    directions: [axes.col(1), axes.col(2)].map(|axis| axis / body.spacing),
+                    sign: 1.0,
+                }
+            })
+            .collect();
+        let removed = vec![false; sites.len()];
+        frames.iter_mut().enumerate().for_each(|(i, frame)| frame.span(i, &sites, list.row(i), &removed));
+        let normals: Vec<DVec3> = frames.iter().map(|frame| frame.normal(|k| sites[k])).collect();
         orient(&mut frames, &normals, &list);
-        let (faces, removed) = (vec![[false; 2]; sites.len()], vec![false; sites.len()]);
+        let faces = vec![[false; 2]; sites.len()];
         let mut thin = Self { copies, spacing: body.spacing, frames, faces, removed, sites, neighbors: list };
         thin.find_faces();
         thin
     }
 
-    /// Takes note of the particles that have been removed, and says how many they are. What was below them is
-    /// the face now.
+    /// Takes note of the particles that have been removed, and says how many they are in the thin parts. What
+    /// was below them is the face now.
     pub fn take_out(&mut self, removed: &[Removed]) -> u64 {
-        let known = self.removed.iter_mut().zip(removed);
-        let changes = known.map(|(known, now)| std::mem::replace(known, *now != Removed::NO) != *known);
-        if changes.fold(false, |any, change| any | change) {
+        let mut has_changed = false;
+        for (known, now) in self.removed.iter_mut().zip(removed) {
+            has_changed |= std::mem::replace(known, *now != Removed::NO) != *known;
+        }
+        if has_changed {
+            let Self { frames, removed, sites, neighbors, .. } = self;
+            for (i, frame) in frames.iter_mut().enumerate() {
+                frame.span(i, sites, neighbors.row(i), removed);
+            }
             self.find_faces();
         }
-        self.removed.iter().map(|&removed| u64::from(removed)).sum()
+        let gone = self.removed.iter().enumerate().filter(|(_, removed)| **removed);
+        gone.map(|(i, _)| u64::from(!self.neighbors.row(i).is_empty())).sum()
     }
 
     /// Finds the particles on the faces: no neighbour is straight above them, or below.
@@ -120,6 +125,18 @@ impl ThinBody {
 }
 
 impl SurfaceFrame {
+    /// Takes, of particle `i` and its neighbours that are there, those farthest along the two directions.
+    fn span(&mut self, i: usize, sites: &[DVec3], neighbors: &[u32], removed: &[bool]) {
+        let farthest = |direction: DVec3| {
+            let lead = |j: u32| (sites[j as usize] - sites[i]).dot(direction);
+            let better = |best: u32, &j: &u32| if lead(j) > lead(best) + EQUAL { j } else { best };
+            neighbors.iter().filter(|&&j| !removed[j as usize]).fold(i as u32, better)
+        };
+        let [along, across] = self.directions.map(|axis| [farthest(-axis), farthest(axis)]);
+        self.along = along;
+        self.across = self.across.map(|_| across);
+    }
+
     fn normal(&self, position: impl Fn(usize) -> DVec3) -> DVec3 {
         let between = |[from, to]: [u32; 2]| position(to as usize) - position(from as usize);
         self.sign * between(self.along).cross(self.across.map_or(DVec3::Z, between))

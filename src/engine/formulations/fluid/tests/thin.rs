@@ -11,8 +11,7 @@ use crate::simulation::Simulation;
 use crate::world::{BodyId, Force, Mass, Position, Removed, Velocity};
 
 /// Two tanks side by side with a sheet between them, `layers` particles of the water thick and at least two
-/// of its own; water at rest in the
-/// left one and, with its own pressure, in the right one.
+/// of its own; water at rest in the left one and, with its own pressure, in the right one.
 fn tanks(precision: &str, layers: usize, right: f64, rest: &str) -> Simulation {
     let (edge, spacing) = (0.2 + 0.01 * layers as f64, 0.005 * layers.min(2) as f64);
     simulation(&format!(

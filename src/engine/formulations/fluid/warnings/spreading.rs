@@ -16,7 +16,7 @@ use crate::formulations::fluid::lanes::FlowParticle;
 use crate::notation::quantity;
 use crate::parallel::{BlockSum, sum_over_blocks};
 use crate::plugin::SimBuilder;
-use crate::schedule::Step;
+use crate::schedule::{Account, AccountKind, Step};
 
 /// Energy stored over energy dissipated that is worth a warning.
 const SHARE: f64 = 0.1;
@@ -44,7 +44,9 @@ pub struct Seen {
 struct Middle {
     time: f64,
     stored: f64,
+    /// By friction, and by all.
     dissipated: f64,
+    all: f64,
 }
 
 impl Spreading {
@@ -59,18 +61,24 @@ impl Spreading {
     pub fn look(&mut self, is_end: bool, cloud: &FlowCloud, step: &mut Step<'_>) {
         let time = step.clock.time;
         let is_middle = self.seen.middle.is_none() && time >= 0.5 * self.end;
-        if !cloud.viscosities.spin || self.seen.is_told || !(is_middle || is_end) {
+        if !cloud.viscosities.spin || self.seen.is_told || !(is_middle || is_end) || !cloud.loads.is_empty() {
             return;
         }
         let (driving, whole) = stored(cloud, self.gravity);
         let dissipated = step.ledger.total_named(ACCOUNTS[0]);
+        let of_kind = |account: &&Account| account.kind == AccountKind::Dissipated;
+        let ledger = &step.ledger;
+        let all =
+            ledger.accounts().iter().filter(of_kind).map(|one| ledger.total_named(&one.name)).sum::<f64>();
         if is_middle && !is_end {
-            self.seen.middle = Some(Middle { time, stored: driving, dissipated });
+            self.seen.middle = Some(Middle { time, stored: driving, dissipated, all });
             return;
         }
-        let since = self.seen.middle.unwrap_or_default();
+        // A run that ends before its middle has nothing to compare with.
+        let Some(since) = self.seen.middle else { return };
         let (grown, lost) = (driving - since.stored, dissipated - since.dissipated);
-        let is_loud = lost <= step.ledger.total_named("kinetic");
+        // Where stabilizers take more than friction, or much is in motion, the flow is not slow.
+        let is_loud = lost <= step.ledger.total_named("kinetic") || lost <= 0.5 * (all - since.all);
         if grown.abs() <= SHARE * lost || is_loud || grown.abs() <= OF_REST * whole {
             return;
         }
