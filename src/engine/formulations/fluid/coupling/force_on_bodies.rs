@@ -60,7 +60,7 @@ pub fn add_force_on_bodies(
     if follows {
         drag::add(sim, &bodies, phase, label);
     }
-    let step_of = |id| (id, SURFACE * share_of_long_step(sim.body(id).spacing, sim));
+    let step_of = |id| (id, SURFACE * share_of_long_step(id, sim));
     let coupling = Coupling {
         phase,
         follows,
