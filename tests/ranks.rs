@@ -5,7 +5,7 @@ mod common;
 mod threads;
 
 use common::coupled::coupled;
-use common::thin::thin;
+use common::thin::{thin, torn};
 use common::touching::{large_rigid_bodies, tool_of_triangles, touching};
 use common::wearing::wearing;
 use common::{
@@ -101,6 +101,7 @@ fn flows() {
     assert_equal_bits("three dimensions", &flow(3), 60);
     assert_equal_bits("double precision", &double(&flow(3)), 60);
     assert_equal_bits("thin bodies", &thin(), 150);
+    assert_equal_bits("torn", &torn(), 150);
 }
 
 /// Water that falls from a step in a tank along which it slides: loops need what is near their own particles

@@ -3,7 +3,7 @@
 mod common;
 
 use common::coupled::coupled;
-use common::thin::thin;
+use common::thin::{thin, torn};
 use common::touching::{tool_of_triangles, touching};
 use common::wearing::wearing;
 use common::{all_plugins, crash, double, failing, failing_metals, flow, metals, removal, simulation};
@@ -23,6 +23,7 @@ fn a_resumed_run_has_the_bits_of_one_that_was_not_interrupted() {
         (coupled(), 400, 20),
         (coupled(), 700, 21),
         (thin(), 300, 22),
+        (torn(), 300, 27),
         (flow(3), 200, 16),
         (double(&flow(3)), 200, 16),
         (double(&flow(3)), 200, 17),

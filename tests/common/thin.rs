@@ -4,7 +4,16 @@ use meshless::scene::Source;
 
 /// A sheet that bends between two waters, and a thin rigid one that floats in one of them.
 pub fn thin() -> Source {
-    let text = r#"(dimension: Two, gravity: (0.0, -9.81), domain: (min: (-0.2, -0.2), max: (0.72, 0.55), outside: Remove),
+    Source::new("thin.ron", TEXT)
+}
+
+/// The same with a sheet that tears, so that the waters meet through its holes.
+pub fn torn() -> Source {
+    let tears = "plugins: [hourglass_control(), failure(criterion: MaximumPrincipalStrain(limit: 0.004), then: Removed)]";
+    Source::new("torn.ron", TEXT.replace("plugins: [hourglass_control()]", tears))
+}
+
+const TEXT: &str = r#"(dimension: Two, gravity: (0.0, -9.81), domain: (min: (-0.2, -0.2), max: (0.72, 0.55), outside: Remove),
         materials: {"water": Fluid(density: 1000.0, viscosity: 0.5),
                     "rubber": NeoHookean(density: 1100, young: 2e6, poisson: 0.3)},
         bodies: [
@@ -21,5 +30,3 @@ pub fn thin() -> Source {
         conditions: [Fix(on: Select(body: "sheet", face: MinY))],
         plugins: [artificial_viscosity(alpha: 0.02, beta: 0.0)],
         time: (end: 10.0))"#;
-    Source::new("thin.ron", text)
-}

@@ -35,9 +35,9 @@ use crate::shapes::SurfacePoint;
 /// already stand for its area up to there. It is not zero, so that a body that begins to rock turns about its
 /// edge.
 const ON_FACE: f64 = 0.2;
-/// Cosines of the angles between two faces that lie on each other, and from which on their edge counts whole:
-/// below 6 degrees points of the other surface do not touch what is beyond the edge (`RigidNode::faces`).
-const LYING: [f64; 2] = [1.0, 0.995];
+/// One less the cosine of the angle between two faces from which on their edge counts whole: below 6 degrees
+/// points of the other surface do not touch what is beyond the edge (`RigidNode::faces`).
+const STANDING: f64 = 0.005;
 
 /// The share w of a node, its gradient, 1/m, and its derivative with a rotation of the body of the node
 /// against the surface.
@@ -83,13 +83,12 @@ impl Share {
         }
     }
 
-    /// That of a point where faces of these outward normals end, on a surface of that normal.
+    /// The share of a point where faces of these outward normals end, on a surface of that normal.
     pub fn beside_faces(self, ending: [DVec3; 4], normal: DVec3) -> Self {
         let flattest = ending.into_iter().map(|own| (-own.dot(normal), own));
         let (cosine, own) =
             flattest.fold((0.0, DVec3::ZERO), |best, next| if next.0 > best.0 { next } else { best });
-        let range = LYING[0] - LYING[1];
-        let (standing, turning) = growing((LYING[0] - cosine) / range, own.cross(normal) / range);
+        let (standing, turning) = growing((1.0 - cosine) / STANDING, own.cross(normal) / STANDING);
         let part = ON_FACE + (1.0 - ON_FACE) * standing;
         Self {
             share: part * self.share,

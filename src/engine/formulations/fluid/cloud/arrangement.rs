@@ -38,13 +38,19 @@ impl<T: Send, F: Fn(usize, &MomentMatrix, DVec3) -> T + Sync> RowPass<0, 4> for 
         _: &[Vector<A>; 0],
         [xx, yy, zz, first_moment]: &mut [Vector<A>; 4],
     ) {
-        let weight = near.volume * near.weight;
-        *first_moment = near.x_ij.mul_add(weight, *first_moment);
-        add_moment([xx, yy, zz], weight, near.x_ij);
+        add_arrangement(near, [xx, yy, zz, first_moment]);
     }
 
     #[inline(always)]
     fn output(&self, i: usize, &[xx, yy, zz, first_moment]: &[DVec3; 4]) -> T {
         (self.output)(i, &moment_of([xx, yy, zz], self.cloud.plane), first_moment)
     }
+}
+
+/// Adds neighbours to the three columns of the moment matrix and to the first moment.
+#[inline(always)]
+pub fn add_arrangement<A: Arithmetic>(near: &NearPairs<A>, [xx, yy, zz, first_moment]: [&mut Vector<A>; 4]) {
+    let weight = near.volume * near.weight;
+    *first_moment = near.x_ij.mul_add(weight, *first_moment);
+    add_moment([xx, yy, zz], weight, near.x_ij);
 }

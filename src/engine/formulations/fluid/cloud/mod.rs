@@ -42,7 +42,7 @@ mod neighbors;
 
 mod others;
 
-pub use arrangement::ArrangementPass;
+pub use arrangement::{ArrangementPass, add_arrangement};
 pub use edges::{BoundaryEdges, EdgeParticle, Front};
 pub use flow_cloud::{FlowCloud, MIN_SHARE, Near};
 pub use group::{BoundarySurface, FluidState, Group, Role};

@@ -5,8 +5,10 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use crate::correction::{add_moment, moment_of};
-use crate::formulations::fluid::cloud::{FlowCloud, NearPairs, RowPass, smallest_eigenvalue};
+use crate::correction::moment_of;
+use crate::formulations::fluid::cloud::{
+    FlowCloud, NearPairs, RowPass, add_arrangement, smallest_eigenvalue,
+};
 use crate::parallel::{Arithmetic, Vector, sum_over_blocks};
 
 /// The surroundings of a particle.
@@ -44,9 +46,7 @@ impl<T: Send, F: Fn(usize, &FilledAround) -> T + Sync> RowPass<0, 5> for Surroun
         _: &[Vector<A>; 0],
         [xx, yy, zz, first, filling]: &mut [Vector<A>; 5],
     ) {
-        let weight = near.volume * near.weight;
-        add_moment([xx, yy, zz], weight, near.x_ij);
-        *first = near.x_ij.mul_add(weight, *first);
+        add_arrangement(near, [xx, yy, zz, first]);
         filling.x = near.volume.mul_add(near.kernel, filling.x);
     }
 
