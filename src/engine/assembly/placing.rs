@@ -53,13 +53,8 @@ pub(super) fn place_bodies<'r>(
                 })?;
             Ok((formulation, sites, bounds))
         };
-        let (formulation, sites, bounds) = match place() {
-            Ok(parts) => parts,
-            Err(found) => {
-                problems.extend::<Vec<Problem>>(found);
-                continue;
-            }
-        };
+        let parts = place().map_err(|found: Vec<Problem>| problems.extend(found));
+        let Ok((formulation, sites, bounds)) = parts else { continue };
         let material = match materials.iter().find(|(name, _)| *name == body.material) {
             Some((_, material)) => material.clone(),
             None if scene.materials.contains_key(&body.material) => continue,
@@ -74,6 +69,7 @@ pub(super) fn place_bodies<'r>(
             kind: formulation.0.kind,
             offers: formulation.0.offers,
             support: None,
+            kernel: None,
             rows: 0..sites.len(),
             spacing: body.spacing,
             material_name: body.material.clone(),
@@ -109,6 +105,7 @@ impl<'r> Placed<'r> {
         plan.rows = lens[phase]..lens[phase] + plan.sites.len();
         lens[phase] = plan.rows.end;
         plan.support = (formulation.0.support)(&*formulation.1, &plan);
+        plan.kernel = (formulation.0.kernel)(&*formulation.1);
         self.bodies.push(plan);
         self.formulations.push(formulation);
     }

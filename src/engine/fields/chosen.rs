@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::field::FieldInput;
 use super::table::{BodyField, FieldTable};
+use crate::linalg::Sym3;
 use crate::scene::{Problem, unknown};
 use crate::schedule::Resources;
 use crate::world::{BodyId, BodySet, MissingColumn, World};
@@ -77,6 +78,17 @@ impl ChosenField {
             values = values.chunks_exact(width).map(|row| row[pick]).collect();
         }
         Ok(values)
+    }
+
+    /// The numbers of a particle of the body with that Cauchy stress, Pa, if the field is a function of it.
+    pub(crate) fn of_stress(&self, body: BodyId) -> Option<impl Fn(&Sym3) -> Vec<f64>> {
+        let field = self.bodies.get(body.0).copied().flatten()?;
+        let of_stress = self.table.field(field).of_stress()?;
+        Some(move |stress: &Sym3| {
+            let mut values = Vec::new();
+            of_stress(stress, &mut values);
+            self.pick.map_or_else(|| values.clone(), |pick| vec![values[pick]])
+        })
     }
 
     /// One number for each row of a body: the field itself, or the magnitude of a vector.

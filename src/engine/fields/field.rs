@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::rows::FieldColumns;
+use crate::linalg::Sym3;
 use crate::plugin::{BodyKind, SimBuilder};
 use crate::schedule::Resources;
 use crate::world::{BodyId, ColumnInfo, ColumnSet, MissingColumn, Value, World};
@@ -19,6 +20,9 @@ pub struct FieldInput<'a> {
     pub rows: Range<usize>,
 }
 
+/// A function of the Cauchy stress, Pa, that appends its components.
+pub(super) type OfStress = dyn Fn(&Sym3, &mut Vec<f64>) + Send + Sync;
+
 type Evaluate = dyn Fn(&FieldInput<'_>, &mut Vec<f64>) -> Result<(), MissingColumn> + Send + Sync;
 
 /// A named field: a number, vector or tensor for each particle that has the columns it needs.
@@ -30,6 +34,7 @@ pub struct Field {
     needs: Vec<&'static str>,
     kind: Option<BodyKind>,
     evaluate: Box<Evaluate>,
+    of_stress: Option<Box<OfStress>>,
 }
 
 impl Field {
@@ -65,7 +70,21 @@ impl Field {
         evaluate: impl Fn(&FieldInput<'_>, &mut Vec<f64>) -> Result<(), MissingColumn> + Send + Sync + 'static,
     ) -> Self {
         let evaluate = Box::new(evaluate);
-        Self { name: name.into(), unit, about: "", components, needs, kind: None, evaluate }
+        Self { name: name.into(), unit, about: "", components, needs, kind: None, evaluate, of_stress: None }
+    }
+
+    /// The field that is this function of the Cauchy stress.
+    pub(super) fn with_stress<V: Value>(mut self, f: impl Fn(&Sym3) -> V + Send + Sync + 'static) -> Self {
+        self.of_stress = Some(Box::new(move |stress, out| {
+            let value = f(stress);
+            out.extend((0..V::COMPONENTS.len()).map(|k| value.component(k)));
+        }));
+        self
+    }
+
+    /// What it is for a Cauchy stress, if it is a function of that alone.
+    pub(super) fn of_stress(&self) -> Option<&OfStress> {
+        self.of_stress.as_deref()
     }
 
     /// The field that a column is.

@@ -15,6 +15,7 @@ mod table;
 pub use chosen::ChosenField;
 pub use field::{Field, FieldInput};
 pub use rows::FieldColumns;
+pub(crate) use stress::{cauchy, is_of_stress};
 pub use table::FieldTable;
 pub(crate) use table::named;
 

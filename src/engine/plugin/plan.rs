@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use super::error::SetupError;
 use super::offers::{BodyKind, Offer};
+use crate::kernels::KernelName;
 use crate::materials::{FluidLaw, Law, Material, SolidLaw};
 use crate::notation::number;
 use crate::scene::{Problem, Vec3};
@@ -54,6 +55,8 @@ pub struct BodyPlan {
     pub offers: &'static [Offer],
     /// Mean support radius of its particles, m; none where these have no neighbours of their own.
     pub support: Option<f64>,
+    /// Kernel by which its formulation fits deformation gradients; none if it does so by other means.
+    pub kernel: Option<KernelName>,
     /// Rows in the phase.
     pub rows: Range<usize>,
     /// Distance of neighbouring particles, m.

@@ -11,6 +11,7 @@ use super::error::SetupError;
 use super::offers::{BodyKind, Offer};
 use super::plan::BodyPlan;
 use super::traits::{Formulation, Plugin, Support};
+use crate::kernels::KernelName;
 use crate::materials::{Material, MaterialModel};
 use crate::scene::{Described, Item, Parameter, Problem, Scene, TypeDoc, parameters, unknown};
 use crate::world::{BodyId, ColumnSet};
@@ -97,6 +98,7 @@ pub(crate) struct FormulationEntry {
     pub offers: &'static [Offer],
     pub bytes_per_particle: usize,
     pub support: fn(&dyn Any, &BodyPlan) -> Option<f64>,
+    pub kernel: fn(&dyn Any) -> Option<KernelName>,
     pub parse: fn(&Item) -> Result<Box<dyn Any>, Vec<Problem>>,
     pub columns: fn(&mut ColumnSet),
     pub assemble: fn(ParsedBodies, &mut SimBuilder<'_>) -> Result<(), SetupError>,
@@ -143,6 +145,7 @@ impl Registry {
             offers: F::OFFERS,
             bytes_per_particle: F::BYTES_PER_PARTICLE,
             support: |any, body| any.downcast_ref::<F>()?.support(body),
+            kernel: |any| any.downcast_ref::<F>()?.kernel(),
             parse: |item| Ok(Box::new(item.parse::<F>()?)),
             columns: F::columns,
             assemble: |bodies, sim| {

@@ -7,6 +7,7 @@ use super::builder::SimBuilder;
 use super::error::SetupError;
 use super::offers::{BodyKind, Offer};
 use super::plan::BodyPlan;
+use crate::kernels::KernelName;
 use crate::scene::{Edge, Select};
 use crate::world::{BodyId, ColumnSet};
 
@@ -63,6 +64,11 @@ pub trait Formulation: DeserializeOwned + JsonSchema + 'static {
 
     /// Mean support radius of the particles of a body, m; none where these have no neighbours of their own.
     fn support(&self, _body: &BodyPlan) -> Option<f64> {
+        None
+    }
+
+    /// Kernel of the weights by which it fits deformation gradients; none if it does so by other means.
+    fn kernel(&self) -> Option<KernelName> {
         None
     }
 

@@ -66,6 +66,7 @@ fn skin_of(sim: &Simulation, id: BodyId, (dimension, shape): (&str, &str), offer
         kind: crate::plugin::BodyKind::Solid,
         offers,
         support: None,
+        kernel: None,
     };
     Skin::of(&plan, &shape, &[], axes, folder).unwrap_or_else(|| panic!("no skin"))
 }

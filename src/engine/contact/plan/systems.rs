@@ -8,7 +8,6 @@ use crate::contact::system;
 use crate::contact::system::{Planned, Touching};
 use crate::plugin::SimBuilder;
 use crate::scene::{Contact, Problem};
-use crate::symmetry::MirrorPlane;
 use crate::world::BodySet;
 
 /// Adds the contacts of the scene.
@@ -16,7 +15,7 @@ use crate::world::BodySet;
 /// # Errors
 /// Two contacts of one pair, a law whose parameters are wrong, bodies that cannot touch.
 pub fn add_systems(sim: &mut SimBuilder<'_>, make: MakeLaw<'_>) -> Result<(), Vec<Problem>> {
-    let planes: Vec<MirrorPlane> = sim.take_extensions();
+    let planes = sim.mirror_planes();
     let contacts: Vec<(usize, Contact)> = sim.contact_pairs().collect();
     let mut planner = Planner {
         sim,

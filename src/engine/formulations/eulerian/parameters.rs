@@ -88,6 +88,10 @@ impl Formulation for Eulerian {
         Some(self.support * body.spacing)
     }
 
+    fn kernel(&self) -> Option<KernelName> {
+        Some(self.kernel)
+    }
+
     fn columns(columns: &mut ColumnSet) {
         columns
             .add::<SupportRadius>()

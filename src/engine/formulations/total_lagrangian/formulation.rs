@@ -70,6 +70,10 @@ impl Formulation for TotalLagrangian {
         self.mean_support(body)
     }
 
+    fn kernel(&self) -> Option<KernelName> {
+        Some(self.kernel)
+    }
+
     fn columns(columns: &mut ColumnSet) {
         columns
             .add::<SupportRadius>()

@@ -65,6 +65,10 @@ impl Formulation for UpdatedLagrangian {
         Some(self.support * body.spacing)
     }
 
+    fn kernel(&self) -> Option<KernelName> {
+        Some(self.kernel)
+    }
+
     fn columns(columns: &mut ColumnSet) {
         columns
             .add::<SupportRadius>()

@@ -13,7 +13,7 @@ use super::system::output_system;
 use super::track::Track;
 use crate::fields::{ChosenField, FieldTable};
 use crate::plugin::SimBuilder;
-use crate::record::probe::{EnergyColumns, Gauge, ResolvedProbe};
+use crate::record::probe::{self, EnergyColumns, Gauge, ResolvedProbe};
 use crate::record::{Recorder, stop};
 use crate::scene::{Item, Problem, Source, SourcePlace};
 use crate::schedule::Shared;
@@ -36,6 +36,7 @@ impl OutputPlan {
     pub fn resolve(sim: &mut SimBuilder<'_>, recorder_items: &[Item]) -> Result<Self, Vec<Problem>> {
         let recorders: Vec<Box<dyn Recorder>> = sim.take_extensions();
         let recorders: Vec<_> = recorders.into_iter().map(of_this_rank).collect();
+        probe::add_system(sim);
         let table = Arc::new(FieldTable::collect(sim));
         let scene = sim.scene();
         let everything = BodySet::new(sim.bodies().iter().map(|body| body.id));

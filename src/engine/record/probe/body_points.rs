@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::measure::Measure;
 use super::stencil::Stencil;
+use super::surface::SurfacePoints;
 use super::taken::{Extremum, of_number};
 use crate::fields::ChosenField;
 use crate::scene::Reduction;
@@ -25,6 +26,8 @@ pub(super) struct BodyPoints {
     pub body: BodyId,
     pub field: ChosenField,
     pub stencils: Vec<Stencil>,
+    /// Those at surfaces, if the field is one of the stress.
+    pub surface: Option<SurfacePoints>,
     pub made: PointReduction,
 }
 
@@ -43,6 +46,9 @@ impl Measure for BodyPoints {
     fn needs(&self) -> Vec<&'static str> {
         let mut needs = self.field.needs();
         needs.push(Position::NAME);
+        if self.surface.is_some() {
+            needs.extend(SurfacePoints::needs());
+        }
         needs
     }
 
@@ -67,7 +73,10 @@ impl Measure for BodyPoints {
             };
             (0..width).map(value).collect()
         };
-        let all: Vec<Vec<f64>> = shares.iter().map(at).collect();
+        let mut all: Vec<Vec<f64>> = shares.iter().map(at).collect();
+        for (k, values) in all.iter_mut().enumerate() {
+            self.free_surface(k, world, &there, values)?;
+        }
         match &self.made {
             PointReduction::Value | PointReduction::Line(_) => Ok(all.concat()),
             PointReduction::Taken(take @ (Reduction::Minimum | Reduction::Maximum), _) => {
@@ -86,6 +95,28 @@ impl Measure for BodyPoints {
                 Ok((0..width).map(mean).collect())
             }
         }
+    }
+}
+
+impl BodyPoints {
+    /// Puts what the field is for the stress of a free surface in the place of its values at a point of one.
+    fn free_surface(
+        &self,
+        k: usize,
+        world: &World,
+        there: &dyn Fn(u32) -> bool,
+        values: &mut [f64],
+    ) -> Result<(), MissingColumn> {
+        let Some(surface) = &self.surface else { return Ok(()) };
+        let (Some(of_stress), Some(free)) =
+            (self.field.of_stress(self.body), surface.stress(k, world, there)?)
+        else {
+            return Ok(());
+        };
+        for (value, free_value) in values.iter_mut().zip(of_stress(&free.stress)) {
+            *value += free.share * (free_value - *value);
+        }
+        Ok(())
     }
 }
 

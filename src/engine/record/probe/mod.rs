@@ -15,6 +15,7 @@ mod relative;
 mod resolve;
 mod shares;
 mod stencil;
+mod surface;
 mod taken;
 #[cfg(test)]
 mod tests;
@@ -25,3 +26,5 @@ pub use energies::EnergyColumns;
 pub use flow::{pressure_on_face, water_level};
 pub use gauge::Gauge;
 pub use resolve::ResolvedProbe;
+pub use surface::InternalForce;
+pub(super) use surface::add_system;

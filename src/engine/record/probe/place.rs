@@ -8,6 +8,7 @@ use super::line::SpaceLine;
 use super::particles::ParticleGauge;
 use super::point::PointGauge;
 use super::stencil::Stencil;
+use super::surface::MeasuredPoints;
 use super::taken::Extremal;
 use crate::fields::ChosenField;
 use crate::notation;
@@ -169,7 +170,8 @@ fn points_of_body(
     };
     let stencils = found.into_iter().zip(&points).map(stencil).collect::<Result<Vec<_>, _>>()?;
     let made = if place.line.is_some() { PointReduction::Line(along) } else { PointReduction::Value };
-    Ok(Gauge::Measure(Box::new(BodyPoints { body: body.id, field, stencils, made })))
+    let surface = MeasuredPoints { body, field: &field, sim }.at(&points);
+    Ok(Gauge::Measure(Box::new(BodyPoints { body: body.id, field, stencils, surface, made })))
 }
 
 /// The gauge of the surface of one body, at the middles of its facets or of the selected parts of them.
@@ -209,13 +211,15 @@ fn surface(
     let centers: Vec<DVec3> = chosen.iter().map(|part| part.middle(&facets)).collect();
     let found = Stencil::of_points(&centers, body, sim.dimension().count());
     let area = |part: &SelectedFacet| part.share * facets.normal_and_measure(part.facet as usize).1;
-    let known = found.into_iter().zip(&chosen).filter_map(|(stencil, part)| Some((stencil?, area(part))));
-    let (stencils, areas): (Vec<Stencil>, Vec<f64>) = known.unzip();
+    let known = found.into_iter().zip(&chosen).filter_map(|(stencil, part)| Some((stencil?, part)));
+    let (stencils, parts): (Vec<Stencil>, Vec<&SelectedFacet>) = known.unzip();
+    let areas = parts.iter().map(|part| area(part)).collect();
     if stencils.is_empty() {
         return Err(place.problem("on", "no part of the surface is selected", extents(&[body])));
     }
     let made = PointReduction::Taken(place.take, areas);
-    Ok(Gauge::Measure(Box::new(BodyPoints { body: body.id, field, stencils, made })))
+    let surface = MeasuredPoints { body, field: &field, sim }.on(&facets, &parts);
+    Ok(Gauge::Measure(Box::new(BodyPoints { body: body.id, field, stencils, surface, made })))
 }
 
 /// Where bodies are at the start.

@@ -5,6 +5,8 @@ use glam::DVec3;
 use super::shares::shares;
 use crate::neighbors::{Cloud, NeighborList, NeighborSearch, Periodic};
 use crate::plugin::BodyPlan;
+use crate::shapes::Aabb;
+use crate::symmetry::Map;
 
 /// Reach of a point over the spacing of its body.
 const REACH: f64 = 2.0;
@@ -20,6 +22,8 @@ const OUTSIDE: f64 = 1.5;
 struct StencilParticle {
     /// Number of the particle in its body.
     particle: u32,
+    /// Number of the map of which this is the image of the particle.
+    map: u32,
     weight: f64,
     /// From the point to the particle in the reference configuration, m.
     offset: DVec3,
@@ -32,29 +36,37 @@ pub(super) struct Stencil(Vec<StencilParticle>);
 impl Stencil {
     /// Those of points in the reference configuration; none for points that are not of the body.
     pub fn of_points(points: &[DVec3], body: &BodyPlan, axes: usize) -> Vec<Option<Self>> {
-        let particles: Vec<DVec3> = body.sites.iter().map(|site| site.position).collect();
+        Self::with_images(points, body, axes, &[Map::IDENTITY])
+    }
+
+    /// The same with the images of particles in these maps, by which the body goes on.
+    pub fn with_images(points: &[DVec3], body: &BodyPlan, axes: usize, maps: &[Map]) -> Vec<Option<Self>> {
         let reach = |search: i32| REACH * body.spacing * WIDER.powi(search);
+        let around = Aabb::around(points.iter().copied());
+        let (low, high) = (around.min - reach(SEARCHES - 1), around.max + reach(SEARCHES - 1));
+        let mut images: Vec<(DVec3, u32, u32)> = Vec::new();
+        for (number, map) in (0..).zip(maps) {
+            let all =
+                (0..).zip(&body.sites).map(|(particle, site)| (map.place(site.position), particle, number));
+            images.extend(all.filter(|(place, ..)| (place.cmpge(low) & place.cmple(high)).all()));
+        }
+        let places: Vec<DVec3> = images.iter().map(|image| image.0).collect();
         let mut list = NeighborList::default();
         let cloud = |positions| Cloud::uniform(positions, reach(SEARCHES - 1));
-        let found = NeighborSearch::default().between(
-            cloud(points),
-            cloud(&particles),
-            0.0,
-            &Periodic::NONE,
-            &mut list,
-        );
+        let found =
+            NeighborSearch::default().between(cloud(points), cloud(&places), 0.0, &Periodic::NONE, &mut list);
         // A point that is too far away for the cells of a search is not of the body.
         if found.is_err() {
             return points.iter().map(|_| None).collect();
         }
         let of = |(row, point): (usize, &DVec3)| {
             let near = |reach: f64| {
-                let of = |&particle: &u32| {
-                    let site = &body.sites[particle as usize];
-                    let offset = site.position - point;
+                let of = |&image: &u32| {
+                    let (place, particle, map) = images[image as usize];
+                    let offset = place - point;
                     let closeness = 1.0 - offset.length() / reach;
-                    let weight = site.volume * closeness * closeness;
-                    (closeness > 0.0).then_some(StencilParticle { particle, weight, offset })
+                    let weight = body.sites[particle as usize].volume * closeness * closeness;
+                    (closeness > 0.0).then_some(StencilParticle { particle, map, weight, offset })
                 };
                 list.row(row).iter().filter_map(of).collect::<Vec<_>>()
             };
@@ -68,14 +80,33 @@ impl Stencil {
 
     /// The first and the last particle, counted in the body.
     pub fn ends(&self) -> (u32, u32) {
-        let particles = || self.0.iter().map(|near| near.particle);
-        (particles().min().unwrap_or(0), particles().max().unwrap_or(0))
+        (self.particles().min().unwrap_or(0), self.particles().max().unwrap_or(0))
+    }
+
+    /// The particles, counted in the body.
+    pub fn particles(&self) -> impl Iterator<Item = u32> {
+        self.0.iter().map(|near| near.particle)
+    }
+
+    /// The same particles, each of them moved by such a way, m; images go the image of it.
+    pub fn moved(&self, way: impl Fn(u32) -> DVec3, maps: &[Map]) -> Self {
+        let of = |near: &StencilParticle| {
+            let way = maps[near.map as usize].vector(way(near.particle));
+            StencilParticle { offset: near.offset + way, ..*near }
+        };
+        Self(self.0.iter().map(of).collect())
     }
 
     /// The [shares] of the particles in the value at the point. Particles that are not `there` have none.
     pub fn shares(&self, axes: usize, there: impl Fn(u32) -> bool) -> Vec<(u32, f64)> {
+        self.shares_of_images(axes, there).into_iter().map(|(particle, _, share)| (particle, share)).collect()
+    }
+
+    /// The same with the numbers of the maps of images.
+    pub fn shares_of_images(&self, axes: usize, there: impl Fn(u32) -> bool) -> Vec<(u32, u32, f64)> {
         let near: Vec<&StencilParticle> = self.0.iter().filter(|near| there(near.particle)).collect();
         let places: Vec<(f64, DVec3)> = near.iter().map(|near| (near.weight, near.offset)).collect();
-        near.iter().map(|near| near.particle).zip(shares(&places, axes)).collect()
+        let shares = shares(&places, axes);
+        near.iter().zip(shares).map(|(near, share)| (near.particle, near.map, share)).collect()
     }
 }

@@ -20,7 +20,7 @@ fn first(probe: &str) -> Vec<(String, f64)> {
     first_of(text(probe))
 }
 
-fn first_of(text: String) -> Vec<(String, f64)> {
+pub(super) fn first_of(text: String) -> Vec<(String, f64)> {
     let (scene, source) = parse(Source::new("test.ron", text)).unwrap_or_else(|e| panic!("{e}"));
     let folder = tempfile::tempdir().unwrap();
     let options = BuildOptions::into_folder(folder.path());

@@ -1,0 +1,171 @@
+//! Points at the surface of a body where the stress is that of a free surface.
+
+use glam::{DMat3, DVec3};
+
+use super::internal_force::InternalForce;
+use crate::fields::cauchy;
+use crate::linalg::Sym3;
+use crate::record::probe::stencil::Stencil;
+use crate::symmetry::Map;
+use crate::world::{
+    BodyId, Column, Damage, DeformationGradient, Force, MissingColumn, Mobility, PiolaStress, PlasticStrain,
+    ReferenceVolume, World,
+};
+
+/// Force from outside on the particles near a point, over their stress times their area: up to the first the
+/// surface is free, from the second on it is not.
+const PUSHED: [f64; 2] = [0.05, 0.2];
+
+/// A point at or below a free surface.
+pub(super) struct SurfacePoint {
+    /// Outward normal in the reference configuration.
+    pub normal: DVec3,
+    /// Share of the traction found at the surface that the stress has here.
+    pub fade: f64,
+    /// The particles near it, at the places for which their deformation gradients hold.
+    pub stencil: Stencil,
+    /// The same of the point of the surface above it.
+    pub foot: Stencil,
+}
+
+/// Points of a body, with those of them that are at a surface.
+pub(in crate::record::probe) struct SurfacePoints {
+    pub(super) body: BodyId,
+    /// lambda / (lambda + 2 mu).
+    pub(super) coupling: f64,
+    /// Whether the material may flow.
+    pub(super) flows: bool,
+    /// By which the body goes on beyond symmetry planes and periods.
+    pub(super) maps: Vec<Map>,
+    pub(super) points: Vec<Option<SurfacePoint>>,
+}
+
+/// Stress at a point of a free surface.
+pub(in crate::record::probe) struct SurfaceStress {
+    /// Cauchy stress, Pa.
+    pub stress: Sym3,
+    /// Whether it is one: 1 if nothing acts on the surface and the material is elastic, 0 if not.
+    pub share: f64,
+}
+
+impl SurfacePoints {
+    /// Names of the columns that it reads.
+    pub fn needs() -> [&'static str; 5] {
+        [DeformationGradient::NAME, PiolaStress::NAME, Force::NAME, InternalForce::NAME, Mobility::NAME]
+    }
+
+    /// The stress at a point, of the particles that are `there`; none where it is at no free surface.
+    pub fn stress(
+        &self,
+        k: usize,
+        world: &World,
+        there: &dyn Fn(u32) -> bool,
+    ) -> Result<Option<SurfaceStress>, MissingColumn> {
+        let Some(point) = &self.points[k] else { return Ok(None) };
+        let axes = world.dimension().count();
+        let foot = Near::read(self, world, point.foot.shares_of_images(axes, there))?;
+        let share = foot.free(axes);
+        if share == 0.0 {
+            return Ok(None);
+        }
+        let normal = (foot.deformation().inverse().transpose() * point.normal).normalize_or_zero();
+        let of_traction = self.of_traction(&foot.stress(), normal) * point.fade;
+        let near = Near::read(self, world, point.stencil.shares_of_images(axes, there))?;
+        Ok(Some(SurfaceStress { stress: Sym3::symmetric_part(near.stress() - of_traction), share }))
+    }
+
+    /// What a stress at a surface has of the traction there, at constant strains along the surface.
+    fn of_traction(&self, stress: &DMat3, normal: DVec3) -> DMat3 {
+        let traction = *stress * normal;
+        let pull = traction.dot(normal);
+        let along = traction - pull * normal;
+        let dyad = |a: DVec3, b: DVec3| DMat3::from_cols(a * b.x, a * b.y, a * b.z);
+        dyad(normal, normal) * pull
+            + dyad(along, normal)
+            + dyad(normal, along)
+            + (DMat3::IDENTITY - dyad(normal, normal)) * (self.coupling * pull)
+    }
+}
+
+/// The particles near a point.
+struct Near {
+    shares: Vec<f64>,
+    deformation: Vec<DMat3>,
+    stress: Vec<DMat3>,
+    /// Forces from outside, N.
+    push: Vec<f64>,
+    /// Of the cells, m2 (m).
+    area: Vec<f64>,
+    /// Whether any of them is held, or has flowed or failed.
+    is_bound: bool,
+}
+
+impl Near {
+    fn read(
+        points: &SurfacePoints,
+        world: &World,
+        shares: Vec<(u32, u32, f64)>,
+    ) -> Result<Self, MissingColumn> {
+        let (view, rows) = world.body_view(points.body);
+        let axes = world.dimension().count();
+        let at = |n: &(u32, u32, f64)| rows.start + n.0 as usize;
+        let (f, p) = (view.read::<DeformationGradient>()?, view.read::<PiolaStress>()?);
+        let (force, internal) = (view.read::<Force>()?, view.read::<InternalForce>()?);
+        let mobility = view.read::<Mobility>()?;
+        let volume = view.read::<ReferenceVolume>()?;
+        let image = |n: &(u32, u32, f64), tensor: DMat3| points.maps[n.1 as usize].tensor(tensor);
+        let is_held = |row: usize| (0..axes).any(|axis| mobility[row].0[axis] == 0.0);
+        let mut is_bound = shares.iter().any(|n| is_held(at(n)));
+        if points.flows {
+            // A law of which nothing is known but that it remembers.
+            is_bound |= !view.has::<PlasticStrain>();
+            if view.has::<PlasticStrain>() {
+                let strain = view.read::<PlasticStrain>()?;
+                is_bound |= shares.iter().any(|n| strain[at(n)].0 > 0.0);
+            }
+        }
+        if view.has::<Damage>() {
+            let damage = view.read::<Damage>()?;
+            is_bound |= shares.iter().any(|n| damage[at(n)].0 > 0.0);
+        }
+        let power = (axes as f64 - 1.0) / axes as f64;
+        Ok(Self {
+            shares: shares.iter().map(|n| n.2).collect(),
+            deformation: shares.iter().map(|n| image(n, f[at(n)].0)).collect(),
+            stress: shares.iter().map(|n| image(n, cauchy((&f[at(n)], &p[at(n)])).to_matrix())).collect(),
+            push: shares.iter().map(|n| (force[at(n)].0 - internal[at(n)].0).length()).collect(),
+            area: shares.iter().map(|n| volume[at(n)].0.powf(power)).collect(),
+            is_bound,
+        })
+    }
+
+    /// 1 if nothing acts on the particles from outside, 0 if something does.
+    fn free(&self, axes: usize) -> f64 {
+        if self.is_bound || self.shares.len() <= axes {
+            return 0.0;
+        }
+        let push: f64 = self.push.iter().sum();
+        let stress: f64 = self
+            .stress
+            .iter()
+            .zip(&self.area)
+            .map(|(stress, area)| Sym3::symmetric_part(*stress).norm() * area)
+            .sum();
+        let over = if push > 0.0 { push / stress } else { 0.0 };
+        ((PUSHED[1] - over) / (PUSHED[1] - PUSHED[0])).clamp(0.0, 1.0)
+    }
+
+    /// The deformation gradient at the point.
+    fn deformation(&self) -> DMat3 {
+        self.sum(self.deformation.iter().copied())
+    }
+
+    /// Cauchy stress at the point, Pa.
+    fn stress(&self) -> DMat3 {
+        self.sum(self.stress.iter().copied())
+    }
+
+    fn sum(&self, values: impl Iterator<Item = DMat3>) -> DMat3 {
+        self.shares.iter().zip(values).fold(DMat3::ZERO, |sum, (share, value)| sum + value * *share)
+    }
+}

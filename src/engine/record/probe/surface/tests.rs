@@ -1,0 +1,93 @@
+//! Stress at surfaces against that of exact displacement fields, and shifts against a naive fit.
+
+use glam::DVec3;
+
+use super::shifts::shift;
+use crate::kernels::{Kernel, KernelName};
+use crate::record::probe::tests::first_of;
+
+/// A strip of 0.3 x 0.1 m, `across` particles thick, with these displacements and conditions, and one probe of
+/// the stress along x.
+fn strip(body: &str, poisson: f64, across: u32, fields: [&str; 2], conditions: &str, probe: &str) -> f64 {
+    let ([ux, uy], spacing) = (fields, 0.1 / f64::from(across));
+    let found = first_of(format!(
+        r#"(dimension: Two, materials: {{"m": StVenantKirchhoff(density: 1000, young: 1e6, poisson: {poisson})}},
+            bodies: [(name: "b", material: "m", shape: Box(min: (-0.15, -0.05), max: (0.15, 0.05)), spacing: {spacing}, {body})],
+            conditions: [InitialDisplacement(on: Select(body: "b"), value: ("{ux}", "{uy}")), {conditions}],
+            probes: [Probe(name: "p", quantity: Field("stress.xx"), {probe})], time: (end: 1e-9, step: Fixed(1e-9)))"#
+    ));
+    found[0].1
+}
+
+/// Pure bending in plane strain, `u = kappa (x y, -(x^2 + nu/(1 - nu) y^2)/2)`: the stress along x is
+/// `E/(1 - nu^2) kappa y`, to the first order in kappa.
+#[test]
+fn the_stress_of_a_bent_strip_is_right_at_its_surface() {
+    let kappa = 1e-3;
+    for body in [
+        "formulation: TotalLagrangian",
+        "formulation: TotalLagrangian, lattice: Hexagonal",
+        "formulation: UpdatedLagrangian",
+        "formulation: Eulerian",
+    ] {
+        for (poisson, across) in [(0.0, 8), (0.3, 8), (0.3, 16), (0.45, 8)] {
+            let ratio = poisson / (1.0 - poisson);
+            let fields = [&format!("{kappa}*x*y"), &*format!("-0.5*{kappa}*(x*x + {ratio}*y*y)")];
+            let most = 1e6 / (1.0 - poisson * poisson) * kappa * 0.05;
+            let at = strip(body, poisson, across, fields, "", r#"at: (0.01, 0.05), follows: "b""#);
+            assert!((at / most - 1.0).abs() < 3e-3, "{body} {poisson} {across}: {}", at / most);
+            let below = r#"on: Select(body: "b", surface: Facing((0, -1)), within: Box(min: (-0.05, -1), max: (0.05, 1)))"#;
+            let mean = strip(body, poisson, across, fields, "", below);
+            assert!((mean / most + 1.0).abs() < 3e-3, "{body} {poisson} {across}: {}", mean / most);
+        }
+    }
+}
+
+/// Uniaxial stress in plane strain, balanced by a traction on one side: there it is what the traction says,
+/// and not that of a free surface.
+#[test]
+fn a_loaded_side_is_not_free() {
+    let (strain, poisson) = (1e-3, 0.3);
+    let ratio = poisson / (1.0 - poisson);
+    let fields = [&format!("{strain}*x"), &*format!("-{strain}*{ratio}*y")];
+    let stress = 1e6 / (1.0 - poisson * poisson) * strain;
+    let load = format!(r#"Traction(on: Select(body: "b", face: MaxX), value: ("{stress}", "0"))"#);
+    let body = "formulation: TotalLagrangian";
+    let on_side = |load: &str, x: f64| {
+        strip(body, poisson, 8, fields, load, &format!(r#"at: ({x}, 0.0), follows: "b""#)) / stress
+    };
+    assert!((on_side(&load, 0.15) - 1.0).abs() < 3e-3, "{}", on_side(&load, 0.15));
+    // Without a load the side on the other end counts as free.
+    assert!(on_side(&load, -0.15).abs() < 1e-3, "{}", on_side(&load, -0.15));
+    // A held side is not free.
+    let held = r#"Fix(on: Select(body: "b", face: MinX))"#;
+    assert!((on_side(held, -0.15) - 1.0).abs() < 0.1, "{}", on_side(held, -0.15));
+}
+
+/// The slope along the surface that a least-squares fit finds in u = X_n X_t is that at the shifted place.
+#[test]
+fn shifts_are_those_of_a_fit() {
+    let kernel = Kernel::new(KernelName::CubicSpline, 2).expect("a kernel");
+    let support = 2.6;
+    let h = kernel.smoothing_length(support);
+    // A surface along the direction t, with the normal n into the body.
+    let (sin, cos) = 0.7_f64.sin_cos();
+    let (n, t) = (DVec3::new(cos, sin, 0.0), DVec3::new(-sin, cos, 0.0));
+    for depth in 0..4 {
+        let mut near = Vec::new();
+        let (mut up, mut down) = (0.0, 0.0);
+        for (k, l) in (-3..=3).flat_map(|k| (-3..=3).map(move |l| (k, l))) {
+            let arm = f64::from(k) * n + f64::from(l) * t;
+            if (k, l) == (0, 0) || k < -depth || arm.length() >= support {
+                continue;
+            }
+            let weight = kernel.pair_weight(arm.length(), h);
+            near.push((weight, arm));
+            up += weight * arm.dot(n) * arm.dot(t) * arm.dot(t);
+            down += weight * arm.dot(t) * arm.dot(t);
+        }
+        let found = shift(&near, 2);
+        assert!((found - n * (up / down)).length() < 1e-12, "{depth}: {found}");
+        assert!(if depth == 0 { (0.2..0.4).contains(&(up / down)) } else { up / down < 0.05 });
+    }
+}
