@@ -9,7 +9,8 @@ mod local;
 mod response;
 
 use meshless_engine::formulations::fluid::{
-    DensityShift, FLOW_RECORDS, FlowCloud, Interior, Repayment, RowSums, SHIFTING_ENERGY, displace,
+    DensityShift, DisplacementAccount, FLOW_RECORDS, FlowCloud, Interior, Repayment, RowSums,
+    SHIFTING_ENERGY, displace,
 };
 use meshless_engine::glam::DVec3;
 use meshless_engine::materials::ParameterError;
@@ -62,6 +63,7 @@ impl Plugin for ParticleShifting {
             return Ok(());
         }
         sim.add_column_to::<DensityShift>(&bodies);
+        sim.leave_note(DisplacementAccount(SHIFTING_ENERGY));
         sim.add_column_to::<PendingDilation>(&bodies);
         let own = bodies.iter().map(|id| (id, self.strength));
         // Displacements of one fluid change the volumes of its neighbours: one system serves all bodies,
@@ -90,7 +92,7 @@ impl Plugin for ParticleShifting {
                 .reads::<Density>()
                 .reads::<Removed>()
                 .writes::<Velocity>()
-                .writes::<DensityShift>()
+                .adds::<DensityShift>()
                 .reads_near::<PendingDilation>()
                 .writes::<PendingDilation>()
                 .adds::<Position>(),

@@ -128,7 +128,7 @@ pub fn change_velocity(step: &Step<'_>, id: BodyId, responses: &[ShiftResponse])
     }))
 }
 
-/// Sets the changes of density that come before and after the flow of the next step.
+/// Adds the changes of density that come before and after the flow of the next step.
 pub fn change_density(
     step: &Step<'_>,
     cloud: &FlowCloud,
@@ -151,7 +151,7 @@ pub fn change_density(
         pending[row].0 = due * (1.0 - share);
         let beyond = excess.signum() * (excess.abs() - DEAD).max(0.0);
         let change = (RETURN * dt * locals[row].strain_rate).min(1.0) * beyond - share * due;
-        shift[row] = DensityShift(density[row].0 * change / (1.0 - 0.5 * change));
+        shift[row].0 += density[row].0 * change / (1.0 - 0.5 * change);
     }
     Ok(())
 }

@@ -65,7 +65,7 @@ pub use cloud::FLOW_RECORDS;
 pub use cloud::{ArrangementPass, NearPairs, RowPass, RowSums, smallest_eigenvalue};
 pub use cloud::{BoundarySurface, FlowCloud, FluidState, Group, Near, Role};
 pub use coupling::damp_sub_cycled_bodies;
-pub use density::{DensityShift, SHIFTING_ENERGY};
+pub use density::{DensityShift, DisplacementAccount, SHIFTING_ENERGY};
 pub(crate) use fields::fields;
 pub use formulation::Fluid;
 pub use lanes::{FlowParticle, FluidKernel};

@@ -9,19 +9,24 @@ use crate::schedule::{AccountKind, Run, Step, StepError};
 use crate::world::{Density, DensityRate, Mass, Removed};
 
 crate::column! {
-    /// Change of the density of a fluid that is still to follow from a non-advective displacement, in the
-    /// next step.
+    /// Change of the density of a fluid that is still to follow from displacements beside the flow, in the
+    /// next step. Plugins add to it.
     pub struct DensityShift(f64) = "density_shift", "rho_s", "kg/m^3";
 }
 
-/// Account of the energy that displacements take out of fluids, by their weight and by the density that
-/// follows.
+/// Account of the energy that shifting takes out of fluids, by their weight and by the density that follows.
 pub const SHIFTING_ENERGY: &str = "particle_shifting";
+
+/// Note of a plugin that displaces particles: the account of the energy that the density takes out of fluids
+/// as it follows. Of several plugins it is that of the first.
+pub struct DisplacementAccount(pub &'static str);
 
 /// Moves the density by the rate of compression, and by what pair terms found at the end of the step before.
 pub struct Continuity {
     /// Account of the energy that pair terms take out by changing the density; none where no term does.
     pub account: Option<String>,
+    /// Account of the energy that displacements take out by changing the density.
+    pub displacements: &'static str,
     pub sums: Vec<Change>,
 }
 
@@ -68,9 +73,9 @@ impl Run for Continuity {
             let (rate, mass) = (view.read_own::<DensityRate>()?, view.read_own::<Mass>()?);
             let removed = view.read_own::<Removed>()?;
             let rows = group.rows.clone();
-            let shift =
-                if view.has::<DensityShift>() { Some(view.read_own::<DensityShift>()?) } else { None };
-            let shift = shift.as_ref().map(|shift| &shift[rows.clone()]);
+            let mut shift =
+                if view.has::<DensityShift>() { Some(view.write_own::<DensityShift>()?) } else { None };
+            let due = shift.as_ref().map(|shift| &shift[rows.clone()]);
             let of_boundaries = cloud.boundary_compression.get(group.cloud.clone());
             let slices = (
                 &mut density[rows.clone()],
@@ -80,7 +85,7 @@ impl Run for Continuity {
                 &removed[rows],
             );
             let change = for_each_own_block(slices, &mut self.sums, &|first, rows: Rows<'_>| {
-                run_hot(AdvanceDensity { state, dt, by_terms, shift, of_boundaries, first, rows })
+                run_hot(AdvanceDensity { state, dt, by_terms, shift: due, of_boundaries, first, rows })
             });
             if change.broken > 0 {
                 return Err(step.unstable("the density must be positive", group.body, change.broken - 1));
@@ -89,8 +94,9 @@ impl Run for Continuity {
                 let account = step.ledger.account(REMOVED_ENERGY, AccountKind::Dissipated);
                 step.ledger.add(account, group.body, change.removed);
             }
-            if shift.is_some() {
-                let account = step.ledger.account(SHIFTING_ENERGY, AccountKind::Dissipated);
+            if let Some(shift) = &mut shift {
+                shift[group.rows.clone()].fill(DensityShift(0.0));
+                let account = step.ledger.account(self.displacements, AccountKind::Dissipated);
                 step.ledger.add(account, group.body, change.shifted);
             }
             if of_boundaries.is_some() {

@@ -6,8 +6,9 @@ use crate::parallel::sum_over_blocks;
 use crate::schedule::{AccountKind, Step, StepError};
 use crate::world::{BodyId, Mass, Position, Removed};
 
-/// Moves the particles of a body; velocities and densities stay. The change of potential energy is supplied
-/// by gravity, as in any motion, and booked as dissipated in the account of that name.
+/// Moves the particles of a body; velocities stay, and densities follow where a plugin adds to
+/// [`DensityShift`](crate::formulations::fluid::DensityShift). The change of potential energy is supplied by
+/// gravity, as in any motion, and booked as dissipated in the account of that name.
 ///
 /// # Errors
 /// A column is missing.

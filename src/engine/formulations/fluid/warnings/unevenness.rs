@@ -15,7 +15,7 @@
 
 use super::friction::{FrictionOf, FrictionOfParticle};
 use crate::formulations::fluid::cloud::{FlowCloud, RowSums};
-use crate::formulations::fluid::density::DensityShift;
+use crate::formulations::fluid::density::SHIFTING_ENERGY;
 use crate::notation::quantity;
 use crate::parallel::{BlockSum, sum_over_blocks};
 use crate::schedule::Step;
@@ -50,7 +50,7 @@ impl Unevenness {
         let is_slow = step.ledger.total_named("viscosity") > step.ledger.total_named("kinetic");
         for (group, told) in cloud.groups.iter().zip(&mut self.told) {
             // What shifts evens out.
-            told[0] |= step.world.phase(group.phase).has::<DensityShift>();
+            told[0] |= step.ledger.accounts().iter().any(|account| account.name == SHIFTING_ENERGY);
             if group.fluid().is_none() || *told == [true; 2] {
                 continue;
             }
