@@ -4,8 +4,9 @@
 //! is moved onto the side with its mass and volume: the next layer is then one and a half spacings away, and
 //! the cells of both fill the body between them. Particles keep their lattice where the side is not a plane,
 //! beside symmetry planes and periodic sides, and in scenes with fluids, for which the particles of a body
-//! are its surface. Beside a side that is held along its normal alone, the formulations give the particles
-//! shares of their stress for which a uniform stress is in equilibrium.
+//! are its surface. Beside a side that is held along its normal alone, and beside one that is held along all
+//! axes where the body is endless along it, the formulations give the particles shares of their stress for
+//! which a uniform stress is in equilibrium.
 
 use glam::DVec3;
 
@@ -55,7 +56,9 @@ pub(super) fn place(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>
                     continue;
                 }
                 let (axis, sign) = face.outward();
-                let side = HeldSide { normal: sign * DVec3::AXES[axis], plane: (axis, at), moved };
+                let is_endless = is_endless(scene, axis, body);
+                let side =
+                    HeldSide { normal: sign * DVec3::AXES[axis], plane: (axis, at), moved, is_endless };
                 sides[id.0].push((side, support.axes));
             }
         });
@@ -77,11 +80,29 @@ fn place_body(body: &mut BodyPlan, sides: &[(HeldSide, [bool; 3])], axes: usize)
     let is_held = |side: &HeldSide, axis: usize| {
         sides.iter().any(|(other, held)| other.normal == side.normal && held[axis])
     };
-    // A stress that is uniform up to a side needs a side that can contract.
-    let is_drawn =
-        |side: &HeldSide, held: &[bool; 3]| held[side.plane.0] && (0..axes).any(|axis| !is_held(side, axis));
+    // A stress that is uniform up to a side needs a side that can contract, or one without edges.
+    let is_drawn = |side: &HeldSide, held: &[bool; 3]| {
+        held[side.plane.0] && (side.is_endless || (0..axes).any(|axis| !is_held(side, axis)))
+    };
     let drawn = sides.iter().filter(|(side, held)| is_drawn(side, held));
     body.sides.extend(drawn.map(|(side, _)| side.clone()));
+}
+
+/// Whether a body continues beyond both of its ends along each axis but this one: sides along this axis have
+/// no edges.
+fn is_endless(scene: &Scene, across: usize, body: &BodyPlan) -> bool {
+    let faces = [(Face::MinX, Face::MaxX), (Face::MinY, Face::MaxY), (Face::MinZ, Face::MaxZ)];
+    let mut along = (0..scene.dimension.count()).filter(|axis| *axis != across);
+    along.all(|axis| {
+        let (low, high) = (body.bounds.min[axis], body.bounds.max[axis]);
+        let reaches = |(end, at): (f64, f64)| (end - at).abs() < 0.5 * body.spacing;
+        let is_across = scene.domain.as_ref().is_none_or(|domain| {
+            let is_periodic = domain.periodic.iter().any(|other| other.index() == axis);
+            !is_periodic || (reaches((low, domain.min.0[axis])) && reaches((high, domain.max.0[axis])))
+        });
+        let continues = |face: Face, at: f64| is_mirrored(scene, face, at, body.spacing);
+        is_across && continues(faces[axis].0, low) && continues(faces[axis].1, high)
+    })
 }
 
 /// Coordinate of a side of a box, m.

@@ -289,3 +289,54 @@ fn metal_drawn_by_its_sides_strains_evenly() {
         assert!(least > 1.0 - tolerance && most < 1.0 + tolerance, "{formulation}: {least} {most}");
     }
 }
+
+/// The plastic strain of every particle of a block over that of uniform shear, minimum and maximum: it is
+/// sheared between two sides that are held along all axes and have no edges, for it spans a period along x
+/// and, in space, lies between two symmetry planes.
+fn spread_in_shear(dimension: usize, formulation: &str) -> (f64, f64) {
+    let (strain, rate, young, poisson, strength, hardening) = (0.07, 1e3, 70e9, 0.3, 4e8, 1e9);
+    let (name, low, high, planes) = match dimension {
+        2 => ("Two", "(0, 0)", "(0.01, 0.01)", ""),
+        _ => (
+            "Three",
+            "(0, 0, 0)",
+            "(0.01, 0.01, 0.005)",
+            "Symmetry(plane: Z, at: 0.0), Symmetry(plane: Z, at: 0.005),",
+        ),
+    };
+    let text = format!(
+        r#"(dimension: {name}, domain: (min: (0, -1, -1), max: (0.01, 1, 1), periodic: [X]),
+            materials: {{"metal": J2(density: 2700, young: {young}, poisson: {poisson},
+                hardening: Linear(yield_stress: {strength}, modulus: {hardening}))}},
+            bodies: [(name: "block", material: "metal", shape: Box(min: {low}, max: {high}), spacing: 0.00125,
+                formulation: {formulation}, plugins: [])],
+            conditions: [{planes} Fix(on: Select(face: MinY)), Velocity(on: Select(face: MaxY), value: ("{rate}*0.01", 0, 0)),
+                InitialVelocity(on: Select(), value: ("{rate}*y", 0, 0))],
+            time: (end: {}))"#,
+        strain / rate
+    );
+    let (scene, source) = parse(Source::new("sheared.ron", text)).unwrap_or_else(|e| panic!("{e}"));
+    let mut sim = build(&scene, &source, &Registry::standard()).unwrap_or_else(|e| panic!("{e}"));
+    sim.run(|_| true).unwrap();
+    let shear: f64 = young / (2.0 * (1.0 + poisson));
+    let uniform = (shear * strain * 3f64.sqrt() - strength) / (hardening + 3.0 * shear);
+    let (view, rows) = sim.world().body_view(BodyId(0));
+    let all = view.read::<PlasticStrain>().unwrap();
+    let of = || rows.clone().map(|row| all[row].0 / uniform);
+    (of().fold(f64::INFINITY, f64::min), of().fold(0.0, f64::max))
+}
+
+/// With shares of one, 1.7 of the uniform strain at the sides and 0.35 in the third layer, at any spacing.
+#[test]
+fn metal_sheared_between_sides_without_edges_strains_evenly() {
+    for (dimension, formulation) in [
+        (2, "TotalLagrangian"),
+        (2, "UpdatedLagrangian()"),
+        (2, "Eulerian()"),
+        (3, "TotalLagrangian"),
+        (3, "Eulerian()"),
+    ] {
+        let (least, most) = spread_in_shear(dimension, formulation);
+        assert!(least > 0.98 && most < 1.02, "{dimension}, {formulation}: {least} {most}");
+    }
+}

@@ -14,8 +14,8 @@ use crate::scene::{Problem, Vec3};
 use crate::shapes::{Aabb, Site};
 use crate::world::{BodyId, Column, ColumnSet, Damage, PhaseId};
 
-/// A plane side of a body whose particles are held along its normal, and free along another axis: they have
-/// been moved onto it.
+/// A plane side of a body whose particles are held along its normal, and free along another axis or without
+/// edges: they have been moved onto it.
 #[derive(Clone, Debug)]
 pub struct HeldSide {
     /// Unit normal out of the body.
@@ -24,6 +24,8 @@ pub struct HeldSide {
     pub plane: (usize, f64),
     /// The particles, by their numbers, ascending, and how far they have been moved, m.
     pub moved: Vec<(u32, DVec3)>,
+    /// Whether the body continues beyond all edges of the side, in mirror images or periods.
+    pub is_endless: bool,
 }
 
 impl HeldSide {

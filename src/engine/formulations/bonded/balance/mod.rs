@@ -20,7 +20,9 @@
 //! equation. Shares do not change with time, so that forces stay the derivative of an energy. The remaining b
 //! is the imbalance, of which the program warns for metal.
 //!
-//! Sides that are held along all axes keep c = 1: their stress is not uniform.
+//! Sides that are held along all axes have such shares where the body is endless along them: the stress
+//! beside them is uniform, and it is in balance in shear too, because b is along the normal and its product
+//! with any stress vanishes with it. Others keep c = 1: at their edges the stress is not uniform.
 
 mod alike;
 mod body;

@@ -40,7 +40,12 @@ fn beside(body: &HeldBody<'_>) -> Option<String> {
     let flows = || plan.solid_law().is_ok_and(|law| law.initial_yield_stress().is_some_and(f64::is_finite));
     let side = plan.sides.first().filter(|_| flows())?;
     let (name, face) = (&plan.name, face(side));
-    Some(format!("the side `{face}` of body `{name}` is held or drawn along its normal alone"))
+    let along = if side.is_endless {
+        "has no edges and is held or driven"
+    } else {
+        "is held or drawn along its normal alone"
+    };
+    Some(format!("the side `{face}` of body `{name}` {along}"))
 }
 
 /// The name of a side in scenes.
