@@ -31,6 +31,12 @@ pub fn after(source: &Source, steps: u64) -> Simulation {
     sim
 }
 
+/// A block whose density is smoothed while it swings.
+pub fn diffusing() -> Source {
+    let formulation = "Eulerian(), plugins: [hourglass_control(), density_diffusion(delta: 0.2)]";
+    block(2, formulation, r#"("0.3*sin(5*x)", "0.2*x*y")"#, "")
+}
+
 /// What the sums over pairs need of a particle.
 #[derive(Clone, Copy)]
 pub struct Particle {

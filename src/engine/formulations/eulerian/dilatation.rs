@@ -5,6 +5,7 @@
 //! the name of the plugin.
 
 use glam::DMat3;
+use serde::{Deserialize, Serialize};
 
 use super::rows::EulerianRows;
 use crate::column;
@@ -22,8 +23,9 @@ column! {
 /// Account of what leaves the stored energy by it.
 const ACCOUNT: &str = "density_diffusion";
 
-/// Stiffness of every particle against a change of its volume: tr(tau) V_0 over the axes of the body, J.
-#[derive(Default)]
+/// What each particle gains by a change of the logarithm of its volume: tr(tau) V_0 over the axes of the
+/// body, J, at the end of the last step. A checkpoint holds it: the next step books the mean with its own.
+#[derive(Default, Serialize, Deserialize)]
 pub(super) struct Dilatation {
     before: Vec<f64>,
 }

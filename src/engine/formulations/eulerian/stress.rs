@@ -63,11 +63,14 @@ impl Run for Stress {
     }
 
     fn save(&self) -> Vec<u8> {
-        postcard::to_stdvec(&self.solids.stretch_factors()).unwrap_or_default()
+        postcard::to_stdvec(&(self.solids.stretch_factors(), &self.dilatation)).unwrap_or_default()
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        let Ok(factors) = postcard::from_bytes::<Vec<f64>>(state) else { return false };
+        let Ok((factors, dilatation)) = postcard::from_bytes::<(Vec<f64>, Dilatation)>(state) else {
+            return false;
+        };
+        self.dilatation = dilatation;
         self.is_restored = true;
         self.solids.restore_stretch_factors(&factors)
     }
