@@ -13,9 +13,10 @@ use crate::scene::{Expression, PerAxis, Select};
 use crate::schedule::{Step, StepError};
 use crate::world::Mass;
 
-/// Loads particles with a force per mass, a function of their reference position and time: a shaking table,
-/// an electromagnetic force. Constant gravity of all bodies is `gravity` of the scene. Walls beside a fluid
-/// feel it as they feel gravity.
+/// Loads particles with a force per mass, a function of place and time: a shaking table, an electromagnetic
+/// force. The place is the reference position of a solid or rigid body, and the present position of a fluid.
+/// Constant gravity of all bodies is `gravity` of the scene. Walls beside a fluid feel it as they feel
+/// gravity.
 ///
 /// Gravity that grows within 0.1 s: `BodyForce(on: Select(), value: (0.0, "-9.81*smoothstep(t/0.1)"))`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -41,21 +42,21 @@ impl Plugin for BodyForce {
     }
 }
 
-/// A field of the reference position and time, times the mass of every particle.
+/// A field of the place and time, times the mass of every particle.
 struct ForcePerMass {
     field: VectorField,
 }
 
 impl LoadLaw for ForcePerMass {
     fn forces(&self, _: usize, part: &Part, step: &Step<'_>, out: &mut Vec<DVec3>) -> Result<(), StepError> {
-        self.field.values(&part.points, step.clock.end(), BodyForce::NAME, out)?;
+        self.field.values(&part.places(step.world)?, step.clock.end(), BodyForce::NAME, out)?;
         let (view, _) = step.world.body_view(part.body);
         let mass = view.read::<Mass>()?;
         out.iter_mut().zip(&part.rows).for_each(|(force, &row)| *force *= mass[row as usize].0);
         Ok(())
     }
 
-    fn is_constant(&self) -> bool {
-        !self.field.depends_on_time()
+    fn is_constant(&self, part: &Part) -> bool {
+        self.field.is_constant(part)
     }
 }

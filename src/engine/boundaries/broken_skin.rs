@@ -29,7 +29,7 @@ impl<L: LoadLaw> LoadLaw for BrokenSkinLoad<L> {
         self.law.forces(k, part, step, out)
     }
 
-    fn is_constant(&self) -> bool {
+    fn is_constant(&self, _: &Part) -> bool {
         false
     }
 }

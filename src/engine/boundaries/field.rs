@@ -9,7 +9,7 @@ use crate::plugin::{SetupError, SimBuilder};
 use crate::scene::{Dimension, Expression, PerAxis};
 use crate::schedule::StepError;
 
-/// A vector function of the reference position and time; an axis without function is zero.
+/// A vector function of place and time; an axis without function is zero.
 #[derive(Clone, Debug)]
 pub(super) struct VectorField {
     components: [Option<Expression>; 3],
@@ -62,6 +62,11 @@ impl VectorField {
         self.components.iter().flatten().any(Expression::depends_on_time)
     }
 
+    /// Whether a load keeps its values on the particles of a part: particles of a fluid come to other places.
+    pub fn is_constant(&self, part: &Part) -> bool {
+        !self.depends_on_time() && !(part.flows() && self.depends_on_place())
+    }
+
     /// Whether the values differ from place to place.
     pub fn depends_on_place(&self) -> bool {
         self.components.iter().flatten().any(Expression::depends_on_place)
@@ -106,7 +111,7 @@ impl VectorField {
         }
         let (point, value) = (points[bad.0 - 1], out[bad.0 - 1]);
         let message = format!(
-            "the value must be finite, found {} at the reference position {} m and {}",
+            "the value must be finite, found {} at the place {} m and {}",
             place(value),
             place(point),
             quantity(t, "s")

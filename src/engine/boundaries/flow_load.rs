@@ -10,7 +10,7 @@ use super::part::Part;
 use crate::formulations::fluid::{FLOW_LOADS, FlowCloud};
 use crate::plugin::{BodyKind, SimBuilder};
 use crate::schedule::{Mode, Run, Stage, Step, StepError, System};
-use crate::world::{Mass, ParticleId, PhaseId};
+use crate::world::{Mass, ParticleId, PhaseId, Position};
 
 /// Adds the system that passes a load on to fluids with boundaries.
 /// `declare` adds the columns that the law reads.
@@ -34,7 +34,7 @@ pub(super) fn add(
     let load = FlowLoad { law: Arc::clone(law), parts, accelerations };
     let system = System::new(Stage::Gradients, format!("{label}_of_flow"), load);
     let system = system.on_phases(phases).touches_packed(FLOW_LOADS, Mode::Adds);
-    sim.add_system(declare(system.reads::<Mass>().reads::<ParticleId>()));
+    sim.add_system(declare(system.reads::<Position>().reads::<Mass>().reads::<ParticleId>()));
 }
 
 struct FlowLoad {
@@ -49,7 +49,7 @@ impl Run for FlowLoad {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         for ((k, part), accelerations) in self.parts.iter_mut().zip(&mut self.accelerations) {
             part.follow(step.world, accelerations)?;
-            if accelerations.is_empty() || !self.law.is_constant() {
+            if accelerations.is_empty() || !self.law.is_constant(part) {
                 self.law.forces(*k, part, step, accelerations)?;
                 let mass = step.world.phase(step.world.body(part.body).phase).read::<Mass>()?;
                 for (acceleration, &row) in accelerations.iter_mut().zip(&part.rows) {

@@ -22,8 +22,8 @@ pub struct TotalForce {
     /// Particles.
     pub on: Select,
     /// Total force per axis \[N; N per metre of thickness in two dimensions\], a function of time; where it
-    /// depends on the reference position, every particle takes its share of the value at its own place.
-    /// `None` is zero.
+    /// depends on place, every particle takes its share of the value at its reference position, in a fluid at
+    /// its present one. `None` is zero.
     pub value: PerAxis<Expression>,
 }
 

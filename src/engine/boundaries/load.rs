@@ -16,10 +16,9 @@ use crate::parallel::{Picked, sum_over_blocks};
 use crate::plugin::{BodyKind, Selection, SetupError, SimBuilder};
 use crate::rigid::RIGID_BODIES;
 use crate::schedule::{AccountKind, Mode, Run, Stage, Step, StepError, System};
-use crate::world::{BodyId, Force, ParticleId, Removed, Velocity};
+use crate::world::{BodyId, Force, ParticleId, Position, Removed, Velocity};
 
-/// A load that does not follow the motion: a field of the reference position and time, times a share per
-/// particle.
+/// A load that does not follow the motion: a field of the place and time, times a share per particle.
 pub(super) struct DeadLoad {
     /// Label, for errors.
     pub name: &'static str,
@@ -33,7 +32,7 @@ pub(super) struct DeadLoad {
 
 impl LoadLaw for DeadLoad {
     fn forces(&self, k: usize, part: &Part, step: &Step<'_>, out: &mut Vec<DVec3>) -> Result<(), StepError> {
-        self.field.values(&part.points, step.clock.end(), self.name, out)?;
+        self.field.values(&part.places(step.world)?, step.clock.end(), self.name, out)?;
         let shares = &self.shares[k];
         sum_over_blocks(&mut out[..], &|first, out: &mut [DVec3]| {
             out.iter_mut().zip(first..).for_each(|(force, n)| *force *= shares[part.number(n)]);
@@ -41,8 +40,8 @@ impl LoadLaw for DeadLoad {
         Ok(())
     }
 
-    fn is_constant(&self) -> bool {
-        !self.field.depends_on_time()
+    fn is_constant(&self, part: &Part) -> bool {
+        self.field.is_constant(part)
     }
 
     fn arms(&self, k: usize) -> &[DVec3] {
@@ -70,7 +69,12 @@ pub(super) fn apply(
     if turns {
         system = system.touches_packed(RIGID_BODIES, Mode::Adds);
     }
-    let system = system.reads::<Velocity>().reads::<Removed>().reads::<ParticleId>().adds::<Force>();
+    let system = system
+        .reads::<Position>()
+        .reads::<Velocity>()
+        .reads::<Removed>()
+        .reads::<ParticleId>()
+        .adds::<Force>();
     sim.add_system(declare(system));
 }
 
@@ -109,7 +113,7 @@ impl Run for Load {
             }
             part.follow(step.world, last)?;
             let first = last.is_empty();
-            let changes = first || !self.law.is_constant();
+            let changes = first || !self.law.is_constant(part);
             if changes {
                 self.law.forces(k, part, step, &mut self.next)?;
                 if first {
@@ -148,7 +152,7 @@ impl Run for Load {
     }
 
     fn save(&self) -> Vec<u8> {
-        if self.law.is_constant() {
+        if self.parts.iter().all(|part| self.law.is_constant(part)) {
             return Vec::new();
         }
         let mut components = Vec::new();

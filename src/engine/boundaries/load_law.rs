@@ -10,8 +10,8 @@ pub(super) trait LoadLaw: Send + Sync + 'static {
     /// Writes the force on every particle of part `k`, N, at the end of the step.
     fn forces(&self, k: usize, part: &Part, step: &Step<'_>, out: &mut Vec<DVec3>) -> Result<(), StepError>;
 
-    /// Whether the forces are the same in every step.
-    fn is_constant(&self) -> bool;
+    /// Whether the forces on a part are the same in every step.
+    fn is_constant(&self, part: &Part) -> bool;
 
     /// From the particles of part `k` of a rigid body to where the forces act, in the reference
     /// configuration, m; none where they act on the particles.

@@ -231,7 +231,7 @@ impl LoadLaw for Uniform {
         Ok(())
     }
 
-    fn is_constant(&self) -> bool {
+    fn is_constant(&self, _: &Part) -> bool {
         false
     }
 }

@@ -31,6 +31,9 @@ mod symmetry;
 #[cfg(test)]
 mod tests;
 mod traction;
+mod turning;
+#[cfg(test)]
+mod turning_tests;
 mod velocity;
 
 pub use body_force::BodyForce;

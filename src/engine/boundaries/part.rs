@@ -1,9 +1,12 @@
 //! The selected particles of a body, with their positions in the reference configuration.
 
+use std::borrow::Cow;
+
 use glam::DVec3;
 
+use crate::neighbors::Periodic;
 use crate::plugin::{BodyKind, Selection, SimBuilder};
-use crate::world::{BodyId, MissingColumn, PhaseId, World};
+use crate::world::{BodyId, MissingColumn, PhaseId, Position, World};
 
 /// Selected particles of one body.
 #[derive(Clone, Debug)]
@@ -18,6 +21,8 @@ pub(super) struct Part {
     at_start: Vec<u32>,
     /// Which of these each row holds.
     numbers: Vec<u32>,
+    /// Periods of the domain.
+    periodic: Periodic,
 }
 
 impl Part {
@@ -25,6 +30,25 @@ impl Part {
     #[inline]
     pub fn number(&self, n: usize) -> usize {
         self.numbers.get(n).map_or(n, |&k| k as usize)
+    }
+
+    /// Whether the particles are those of a fluid.
+    pub fn flows(&self) -> bool {
+        !self.at_start.is_empty()
+    }
+
+    /// Where a load on the particles is evaluated: at their reference positions; in a fluid, which has no
+    /// reference, where they are now in the domain.
+    ///
+    /// # Errors
+    /// The phase has no positions.
+    pub fn places(&self, world: &World) -> Result<Cow<'_, [DVec3]>, MissingColumn> {
+        if !self.flows() {
+            return Ok(Cow::Borrowed(&self.points));
+        }
+        let (view, _) = world.body_view(self.body);
+        let position = view.read::<Position>()?;
+        Ok(self.rows.iter().map(|&row| self.periodic.wrap(position[row as usize].0)).collect())
     }
 
     /// Finds the rows again after the body has been sorted, and puts `along`, one value a row or none, into
@@ -59,7 +83,7 @@ pub(super) fn parts_of(selection: &Selection, sim: &SimBuilder<'_>) -> Vec<Part>
         let points = rows.iter().map(|&row| body.sites[row as usize - body.rows.start].position).collect();
         let at_start = if body.kind == BodyKind::Fluid { rows.clone() } else { Vec::new() };
         let numbers = (0..at_start.len() as u32).collect();
-        Part { body: *id, rows: rows.clone(), points, at_start, numbers }
+        Part { body: *id, rows: rows.clone(), points, at_start, numbers, periodic: sim.periodic() }
     };
     selection.parts.iter().map(part).collect()
 }

@@ -128,7 +128,7 @@ impl LoadLaw for Follower {
         Ok(())
     }
 
-    fn is_constant(&self) -> bool {
+    fn is_constant(&self, _: &Part) -> bool {
         false
     }
 }

@@ -5,6 +5,7 @@ use serde::Deserialize;
 
 use super::field::VectorField;
 use super::prescribed::{self, PrescribedKind};
+use super::turning;
 use crate::notation::{quantity, quantity_to};
 use crate::plugin::{BodyKind, Plugin, Selection, SetupError, SimBuilder, Support};
 use crate::scene::{Edge, Expression, PerAxis, Select};
@@ -14,7 +15,8 @@ use crate::scene::{Edge, Expression, PerAxis, Select};
 /// A velocity that jumps sends a shock through the body. A smooth start within 1 ms, then a constant velocity
 /// of -0.1 m/s: `Velocity(on: Select(body: "tool"), value: (None, "-0.1*smoothstep(t/1e-3)"))`. A push of 2
 /// ms that ends as smoothly as it starts: `"-0.1*smoothstep(t/1e-3)*(1 - smoothstep((t - 1e-3)/1e-3))"`. A
-/// rigid body moves as a whole, with the same value in all of its places; `RotationRate` rotates it.
+/// rigid body moves as a whole, with the same value in all of its places; `RotationRate` rotates it. A wall or
+/// a part of a solid that turns needs a `Displacement`, because its particles leave their reference positions.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename = "Velocity")]
 pub struct PrescribedVelocity {
@@ -40,6 +42,7 @@ impl Plugin for PrescribedVelocity {
         let selection = sim.select(&self.on, "on")?;
         let field = VectorField::new(self.value, sim)?;
         warn_of_fast_motion(&field, &selection, sim);
+        turning::warn(&field, &selection, sim);
         prescribed::prescribe(Self::NAME, PrescribedKind::Velocity, field, &selection, sim)
     }
 }

@@ -3,7 +3,8 @@
 //! A line from each particle against gravity, through its fluid and the fluids above it, ends at a free
 //! surface: `p = sum_k rho_k g l_k` with the lengths l_k in each fluid. Where the line ends at a wall or a
 //! body, the pressure is continued hydrostatically from neighbouring particles that have one; in fluids
-//! without a free surface, which are beside each other, it is zero at their highest point. Fluids that touch
+//! without a free surface, which are beside each other, it is zero at their highest point. Above the level of
+//! the free surface, as in a siphon, it is negative where boundaries have suction, else zero. Fluids that touch
 //! no wall and no body, alone or together, fall freely: their pressure is zero. Gravity along a periodic axis
 //! on which fluids are endless drives them, and causes no pressure.
 
@@ -13,6 +14,7 @@ use rayon::prelude::*;
 use super::endless;
 use super::spread::AllFluids;
 use super::start::StartPressure;
+use crate::formulations::fluid::walls::has_suction;
 use crate::neighbors::Periodic;
 use crate::plugin::{SetupError, SimBuilder};
 use crate::scene::Expression;
@@ -64,8 +66,9 @@ pub fn pressures(
         rest.spread(&mut found, support, sim)?;
     }
     let held = rest.held(sim);
+    let least = if has_suction(sim) { f64::NEG_INFINITY } else { 0.0 };
     let pressures = rest.layers.into_iter().zip(found).zip(held).map(|((layer, found), is_held)| {
-        let at_rest = |p: Option<f64>| if is_held { p.unwrap_or(0.0).max(0.0) } else { 0.0 };
+        let at_rest = |p: Option<f64>| if is_held { p.unwrap_or(0.0).max(least) } else { 0.0 };
         match layer.given {
             Some(expression) => StartPressure::Given(expression),
             None => StartPressure::AtRest(found.into_iter().map(at_rest).collect()),

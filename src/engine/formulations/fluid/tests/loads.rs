@@ -6,7 +6,7 @@ use super::{column, simulation};
 use crate::formulations::fluid::FlowCloud;
 use crate::kernels::{Kernel, KernelName};
 use crate::simulation::Simulation;
-use crate::world::{Density, Force, Mass, Position, Pressure};
+use crate::world::{Density, Force, Mass, Position, Pressure, Velocity};
 
 /// A tank with water that is 0.2 m high, with what acts on it, in single precision.
 fn tank(gravity: &str, wall: &str, conditions: &str) -> Simulation {
@@ -105,6 +105,30 @@ fn a_load_that_varies(precision: &str, most: f64) {
         }
         let wanted = if total > 1e-10 { sum / total } else { 0.0 };
         assert!((found.0 - wanted).abs() < most * 2000.0, "{precision}: {} {wanted}", found.0);
+    }
+}
+
+/// A liquid drifts through its period at 1 m/s while a force per mass `x - 1/2` across acts in the domain: on
+/// its way from x_0 to x a particle gains the difference of `(x - 1/2)^2 / 2`, x within the period.
+#[test]
+fn a_load_acts_where_a_fluid_is_now() {
+    for precision in ["Double", "Mixed"] {
+        let mut sim = simulation(&format!(
+            r#"(precision: {precision}, dimension: Two, domain: (min: (0, 0), max: (1, 0.4), periodic: [X, Y]),
+                materials: {{"oil": Fluid(density: 1000.0, sound_speed: 10.0)}},
+                bodies: [(name: "oil", material: "oil", shape: Box(min: (0, 0), max: (1, 0.4)), spacing: 0.04, velocity: (1, 0), formulation: Fluid)],
+                conditions: [BodyForce(on: Select(body: "oil"), value: (0.0, "x - 0.5"))], time: (end: 2.0))"#
+        ));
+        let gained = |x: f64| 0.5 * (x.rem_euclid(1.0) - 0.5).powi(2);
+        for end in [0.5, 1.0, 1.3] {
+            sim.run(|sim| sim.clock().time < end).expect("a run");
+            let t = sim.clock().time;
+            let now = column::<Position>(&sim, 0);
+            let wanted = now.iter().map(|x| gained(x.0.x) - gained(x.0.x - t));
+            let found = column::<Velocity>(&sim, 0);
+            let off = found.iter().zip(wanted).map(|(v, y)| (v.0.y - y).abs()).fold(0.0, f64::max);
+            assert!(off < 0.02 * 0.125, "{precision}, {t}: {off}");
+        }
     }
 }
 

@@ -46,6 +46,34 @@ fn water_below_a_roof_has_the_pressure_of_the_water_beside_it() {
     assert!(error < 1e-3 * 9810.0 * SPACING, "{error}");
 }
 
+/// A tube full of water that leads over a wall, its top 0.2 m above the levels on both sides, hangs in it
+/// where boundaries have suction, and starts without pressure where they have none.
+#[test]
+fn water_in_a_siphon_is_in_tension() {
+    let siphon = |suction: bool| {
+        let sim = simulation(&format!(
+            r#"(dimension: Two, gravity: (0.0, -9.81), materials: {{"water": Fluid(density: 1000.0, sound_speed: 30.0)}},
+                bodies: [
+                    (name: "water", material: "water", spacing: {SPACING}, formulation: Fluid,
+                     shape: Union([Box(min: (0, 0), max: (0.4, 0.2)), Box(min: (0.2, 0.2), max: (0.4, 0.4)), Box(min: (0.4, 0.3), max: (0.6, 0.4)),
+                                   Box(min: (0.6, 0.2), max: (0.8, 0.4)), Box(min: (0.6, 0), max: (1, 0.2))])),
+                    (name: "tanks", material: "wall", spacing: {SPACING}, formulation: Wall(suction: {suction}),
+                     shape: Difference(Box(min: (-0.06, -0.06), max: (1.06, 0.46)),
+                         Union([Box(min: (0, 0), max: (0.4, 0.2)), Box(min: (0.2, 0.2), max: (0.4, 0.4)), Box(min: (0.4, 0.3), max: (0.6, 0.4)),
+                                Box(min: (0.6, 0.2), max: (0.8, 0.4)), Box(min: (0.6, 0), max: (1, 0.2)),
+                                Box(min: (0, 0.2), max: (0.14, 1)), Box(min: (0.86, 0.2), max: (1, 1))]))),
+                ],
+                time: (end: 1.0))"#
+        ));
+        let least = if suction { f64::NEG_INFINITY } else { 0.0 };
+        error(&sim, 0, |_, y| (9810.0 * (0.2 - y)).max(least))
+    };
+    for suction in [true, false] {
+        let error = siphon(suction);
+        assert!(error < 1e-3 * 9810.0 * SPACING, "{suction}: {error}");
+    }
+}
+
 #[test]
 fn oil_on_part_of_the_water_presses_on_that_part() {
     let oil = format!(

@@ -18,7 +18,7 @@ pub struct WallShapes {
     rows: Vec<Range<usize>>,
     /// For each of them, the fluid particles that have it and another one within the support.
     beside: Vec<Vec<usize>>,
-    /// Whether a probe asks for forces on walls, so that edges count where nothing moves.
+    /// Whether a probe asks for forces on walls or bodies, so that edges count where nothing moves.
     are_asked: bool,
 }
 
@@ -46,21 +46,21 @@ impl WallShapes {
         groups.iter().filter(|group| group.fluid().is_none())
     }
 
-    /// Whether there are several walls, and a probe asks for forces on any.
+    /// Whether there are several walls or bodies, and a probe asks for forces on any.
     pub fn are_asked_for(groups: &[Group], sim: &SimBuilder<'_>) -> bool {
-        let walls = || groups.iter().filter(|group| group.is_wall());
         let asks = |probe: &Probe| {
             let of_force = matches!(
                 probe.quantity,
                 Quantity::FluidForce
                     | Quantity::FluidTorque { .. }
                     | Quantity::Force
+                    | Quantity::Torque
                     | Quantity::Moment { .. }
             );
             let on = probe.on.as_ref().filter(|_| of_force);
-            on.is_some_and(|on| walls().any(|group| on.means(&sim.body(group.body).name)))
+            on.is_some_and(|on| Self::candidates(groups).any(|group| on.means(&sim.body(group.body).name)))
         };
-        walls().count() > 1 && sim.scene().probes.iter().any(asks)
+        Self::are_possible(groups) && sim.scene().probes.iter().any(asks)
     }
 
     /// Whether any two of these boundaries may move against each other.
