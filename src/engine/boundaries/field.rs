@@ -64,7 +64,7 @@ impl VectorField {
 
     /// Whether a load keeps its values on the particles of a part: particles of a fluid come to other places.
     pub fn is_constant(&self, part: &Part) -> bool {
-        !self.depends_on_time() && !(part.flows() && self.depends_on_place())
+        !(self.depends_on_time() || part.flows() && self.depends_on_place())
     }
 
     /// Whether the values differ from place to place.

@@ -4,7 +4,7 @@ use super::group::{Group, Role};
 
 /// Minimum kinematic viscosity, in units of c_0 h, at which friction is corrected by the spin: below it a
 /// flow has other losses.
-const MIN_VISCOSITY: f64 = 1e-4;
+pub const MIN_VISCOSITY: f64 = 1e-4;
 
 /// Friction that goes into the sums of a loop: none, without spins, and corrected by these.
 pub const NONE: u8 = 0;

@@ -32,6 +32,8 @@ mod fit;
 
 mod friction;
 
+mod torques;
+
 mod tension;
 pub use tension::Tension;
 

@@ -17,6 +17,7 @@ use super::spreading::Spreading;
 use super::stabilized;
 use super::stretched;
 use super::tension::TensionWatch;
+use super::torques;
 use super::unevenness::Unevenness;
 use crate::formulations::fluid::cloud::{FLOW_RECORDS, FlowCloud, Group};
 use crate::plugin::SimBuilder;
@@ -41,6 +42,8 @@ struct FlowWatch {
     /// been reported.
     diffusion: Option<String>,
     is_driven: bool,
+    /// Whether torques by friction without spin have been reported.
+    has_torques: bool,
     closed: ClosedWatch,
     held_down: HeldDown,
     lost_volume: LostVolume,
@@ -74,6 +77,7 @@ pub fn add(phases: Vec<PhaseId>, groups: &[Group], diffusion: Option<String>, si
         is_stabilized: false,
         diffusion,
         is_driven: false,
+        has_torques: false,
         closed: ClosedWatch::default(),
         held_down: HeldDown::new(sim.gravity(), spacing),
         lost_volume: LostVolume::default(),
@@ -136,13 +140,14 @@ impl Run for FlowWatch {
         if at_end {
             stabilized::look(&mut self.is_stabilized, &cloud, &mut self.scratch, step);
             driven::look(&mut self.is_driven, self.diffusion.as_deref(), &cloud, step);
+            torques::look(&mut self.has_torques, &cloud, step);
         }
         Ok(())
     }
 
     fn save(&self) -> Vec<u8> {
         let told = (&self.intrusion.told, &self.passing.told, &self.unevenness.told);
-        let at_end = (self.is_stabilized, self.is_driven);
+        let at_end = (self.is_stabilized, self.is_driven, self.has_torques);
         let bodies = (self.is_through, self.lies, at_end, self.closed, &self.held_down.seen);
         postcard::to_stdvec(&(
             told,
@@ -163,7 +168,7 @@ impl Run for FlowWatch {
         (self.lost_volume, self.stretched) = (lost, stretched);
         let at_end;
         (self.is_through, self.lies, at_end, self.closed, self.held_down.seen) = bodies;
-        (self.is_stabilized, self.is_driven) = at_end;
+        (self.is_stabilized, self.is_driven, self.has_torques) = at_end;
         (self.intrusion.told, self.passing.told, self.unevenness.told) = told;
         (self.compression, self.filling, self.tension) = (compression, filling, tension);
         self.spreading.seen = spreading;
