@@ -15,8 +15,9 @@ use crate::scene::{Edge, Expression, PerAxis, Select};
 /// A velocity that jumps sends a shock through the body. A smooth start within 1 ms, then a constant velocity
 /// of -0.1 m/s: `Velocity(on: Select(body: "tool"), value: (None, "-0.1*smoothstep(t/1e-3)"))`. A push of 2
 /// ms that ends as smoothly as it starts: `"-0.1*smoothstep(t/1e-3)*(1 - smoothstep((t - 1e-3)/1e-3))"`. A
-/// rigid body moves as a whole, with the same value in all of its places; `RotationRate` rotates it. A wall or
-/// a part of a solid that turns needs a `Displacement`, because its particles leave their reference positions.
+/// rigid body moves as a whole, with the same value in all of its places; `RotationRate` rotates it. A wall
+/// or a part of a solid that turns needs a `Displacement`, because its particles leave their reference
+/// positions.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename = "Velocity")]
 pub struct PrescribedVelocity {

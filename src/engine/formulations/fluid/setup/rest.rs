@@ -4,9 +4,9 @@
 //! surface: `p = sum_k rho_k g l_k` with the lengths l_k in each fluid. Where the line ends at a wall or a
 //! body, the pressure is continued hydrostatically from neighbouring particles that have one; in fluids
 //! without a free surface, which are beside each other, it is zero at their highest point. Above the level of
-//! the free surface, as in a siphon, it is negative where boundaries have suction, else zero. Fluids that touch
-//! no wall and no body, alone or together, fall freely: their pressure is zero. Gravity along a periodic axis
-//! on which fluids are endless drives them, and causes no pressure.
+//! the free surface, as in a siphon, it is negative where boundaries have suction, else zero. Fluids that
+//! touch no wall and no body, alone or together, fall freely: their pressure is zero. Gravity along a
+//! periodic axis on which fluids are endless drives them, and causes no pressure.
 
 use glam::DVec3;
 use rayon::prelude::*;

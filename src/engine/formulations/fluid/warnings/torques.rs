@@ -2,9 +2,9 @@
 //!
 //! Friction without spins is that of the stress `mu grad v`, without its transpose: inside of a fluid the
 //! force is the same, and so is the traction on a surface that does not turn. On one that turns at the rate w
-//! it lacks `2 mu w` along the surface: the torque on a cylinder in a ring twice as wide is 0.2 to 0.6 of what
-//! it should be, and angular momentum is not conserved. Flows of so little viscosity usually lose far more to
-//! stabilizers, but not where sound is very much faster than the flow.
+//! it lacks `2 mu w` along the surface: the torque on a cylinder in a ring twice as wide is 0.2 to 0.6 of
+//! what it should be, and angular momentum is not conserved. Flows of so little viscosity usually lose far
+//! more to stabilizers, but not where sound is very much faster than the flow.
 
 use glam::DVec3;
 
