@@ -2,9 +2,9 @@
 //!
 //! Friction without spins is that of the stress `mu grad v`, without its transpose: inside of a fluid the
 //! force is the same, and so is the traction on a surface that does not turn. On one that turns at the rate w
-//! it lacks `2 mu w` along the surface: the torque on a cylinder in a ring twice as wide is 0.2 to 0.6 of
-//! what it should be, and angular momentum is not conserved. Flows of so little viscosity usually lose far
-//! more to stabilizers, but not where sound is very much faster than the flow.
+//! it lacks `2 mu w` along the surface, and angular momentum is not conserved: torques on a cylinder and on a
+//! ring twice as wide were 0.2 to 0.9 and 1.0 to 1.6 of what they should be. Flows of so little viscosity
+//! usually lose far more to stabilizers, but not where sound is very much faster than the flow.
 
 use glam::DVec3;
 
@@ -44,7 +44,7 @@ pub fn look(is_told: &mut bool, cloud: &FlowCloud, step: &mut Step<'_>) {
     let sound = fluids.map(|fluid| fluid.viscosity / (fluid.density * least)).fold(0.0, f64::max);
     *is_told = true;
     step.warnings.push(format!(
-        "`{}` turns in {}, whose friction has dissipated {} by {}, more than all stabilizers, but is too small beside its sound to be corrected for rotation: the torque on what turns is too small (a quarter to 0.6 of it on a cylinder in a ring twice as wide), and free bodies turn at a wrong rate; \
+        "`{}` turns in {}, whose friction has dissipated {} by {}, more than all stabilizers, but is too small beside its sound to be corrected for rotation: torques are wrong (0.2 to 0.9 of it on a cylinder that turns in a ring twice as wide, 1.0 to 1.6 on the ring), and free bodies turn at a wrong rate; \
          take a `sound_speed` below {}, or smaller particles",
         step.world.body(group.body).name,
         named(cloud, step),
