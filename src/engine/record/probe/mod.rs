@@ -26,5 +26,5 @@ pub use energies::EnergyColumns;
 pub use flow::{pressure_on_face, water_level};
 pub use gauge::Gauge;
 pub use resolve::ResolvedProbe;
-pub use surface::InternalForce;
+pub use surface::ForceOfBody;
 pub(super) use surface::add_system;

@@ -15,7 +15,7 @@ const INTERNAL_FORCE: &str = "internal_force";
 column! {
     /// Force on the particle by its body and by body forces: the whole force without loads on surfaces,
     /// contacts, and fluids.
-    pub struct InternalForce(DVec3) = "internal_force", "f_int", "N";
+    pub struct ForceOfBody(DVec3) = "internal_force", "f_int", "N";
 }
 
 /// Keeps the internal forces of the bodies at whose surfaces a probe of the scene measures a stress.
@@ -24,7 +24,7 @@ pub(in crate::record) fn add_system(sim: &mut SimBuilder<'_>) {
     if bodies.iter().next().is_none() {
         return;
     }
-    sim.add_column_to::<InternalForce>(&bodies);
+    sim.add_column_to::<ForceOfBody>(&bodies);
     let phases = sim.phases_of(&bodies);
     let all = phases.clone();
     let keep = move |step: &mut Step<'_>| {
@@ -32,14 +32,14 @@ pub(in crate::record) fn add_system(sim: &mut SimBuilder<'_>) {
             let view = step.world.phase(*phase);
             let force = view.read::<Force>()?;
             let force: &[DVec3] = bytemuck::cast_slice(&force);
-            bytemuck::cast_slice_mut(&mut view.write::<InternalForce>()?).copy_from_slice(force);
+            bytemuck::cast_slice_mut(&mut view.write::<ForceOfBody>()?).copy_from_slice(force);
         }
         Ok(())
     };
     // What writes to the force runs before what adds to it, as this has to, although it only reads. Forces on
     // the volume are the only ones from outside that a free surface may have.
     let system = System::new(Stage::External, INTERNAL_FORCE, keep).on_phases(phases).after_any("BodyForce");
-    sim.add_system(system.writes::<Force>().writes::<InternalForce>());
+    sim.add_system(system.writes::<Force>().writes::<ForceOfBody>());
 }
 
 /// The bodies at whose surfaces a probe measures a stress.

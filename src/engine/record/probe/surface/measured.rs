@@ -20,7 +20,7 @@ const LENGTH: [f64; 2] = [0.125, 0.5];
 /// Depth of the second layer over the spacing: only the stress of the first one has a traction.
 const SECOND: f64 = 1.5;
 
-/// Where a point lies, m: with the point of the surface above it, m, the outward normal there, and its depth, m.
+/// Where a point lies, with the point of the surface above it, the outward normal there, and its depth, m.
 #[derive(Clone, Copy)]
 struct SurfacePlace {
     point: DVec3,

@@ -23,7 +23,7 @@ mod shifts;
 #[cfg(test)]
 mod tests;
 
-pub use internal_force::InternalForce;
+pub use internal_force::ForceOfBody;
 pub(in crate::record) use internal_force::add_system;
 pub(super) use measured::MeasuredPoints;
 pub(super) use points::SurfacePoints;

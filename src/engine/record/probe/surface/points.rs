@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::internal_force::InternalForce;
+use super::internal_force::ForceOfBody;
 use crate::fields::cauchy;
 use crate::linalg::Sym3;
 use crate::record::probe::stencil::Stencil;
@@ -51,7 +51,7 @@ pub(in crate::record::probe) struct SurfaceStress {
 impl SurfacePoints {
     /// Names of the columns that it reads.
     pub fn needs() -> [&'static str; 5] {
-        [DeformationGradient::NAME, PiolaStress::NAME, Force::NAME, InternalForce::NAME, Mobility::NAME]
+        [DeformationGradient::NAME, PiolaStress::NAME, Force::NAME, ForceOfBody::NAME, Mobility::NAME]
     }
 
     /// The stress at a point, of the particles that are `there`; none where it is at no free surface.
@@ -110,7 +110,7 @@ impl Near {
         let axes = world.dimension().count();
         let at = |n: &(u32, u32, f64)| rows.start + n.0 as usize;
         let (f, p) = (view.read::<DeformationGradient>()?, view.read::<PiolaStress>()?);
-        let (force, internal) = (view.read::<Force>()?, view.read::<InternalForce>()?);
+        let (force, internal) = (view.read::<Force>()?, view.read::<ForceOfBody>()?);
         let mobility = view.read::<Mobility>()?;
         let volume = view.read::<ReferenceVolume>()?;
         let image = |n: &(u32, u32, f64), tensor: DMat3| points.maps[n.1 as usize].tensor(tensor);
