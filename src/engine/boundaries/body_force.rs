@@ -49,7 +49,7 @@ struct ForcePerMass {
 
 impl LoadLaw for ForcePerMass {
     fn forces(&self, _: usize, part: &Part, step: &Step<'_>, out: &mut Vec<DVec3>) -> Result<(), StepError> {
-        self.field.values(&part.places(step.world)?, step.clock.end(), BodyForce::NAME, out)?;
+        self.field.values(&part.points, step.clock.end(), BodyForce::NAME, out)?;
         let (view, _) = step.world.body_view(part.body);
         let mass = view.read::<Mass>()?;
         out.iter_mut().zip(&part.rows).for_each(|(force, &row)| *force *= mass[row as usize].0);

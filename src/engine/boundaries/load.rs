@@ -32,7 +32,7 @@ pub(super) struct DeadLoad {
 
 impl LoadLaw for DeadLoad {
     fn forces(&self, k: usize, part: &Part, step: &Step<'_>, out: &mut Vec<DVec3>) -> Result<(), StepError> {
-        self.field.values(&part.places(step.world)?, step.clock.end(), self.name, out)?;
+        self.field.values(&part.points, step.clock.end(), self.name, out)?;
         let shares = &self.shares[k];
         sum_over_blocks(&mut out[..], &|first, out: &mut [DVec3]| {
             out.iter_mut().zip(first..).for_each(|(force, n)| *force *= shares[part.number(n)]);
@@ -115,6 +115,7 @@ impl Run for Load {
             let first = last.is_empty();
             let changes = first || !self.law.is_constant(part);
             if changes {
+                part.flow(step.world)?;
                 self.law.forces(k, part, step, &mut self.next)?;
                 if first {
                     last.clone_from(&self.next);

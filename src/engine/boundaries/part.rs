@@ -1,6 +1,5 @@
-//! The selected particles of a body, with their positions in the reference configuration.
-
-use std::borrow::Cow;
+//! The selected particles of a body, with the positions at which functions of place are evaluated: those of
+//! the reference configuration, or the present ones of a fluid.
 
 use glam::DVec3;
 
@@ -15,7 +14,7 @@ pub(super) struct Part {
     pub body: BodyId,
     /// Rows in the phase of the body, ascending.
     pub rows: Vec<u32>,
-    /// Reference position of each, m.
+    /// Reference position of each, m; of a fluid the place that [`Part::flow`] took last.
     pub points: Vec<DVec3>,
     /// Rows at the start, ascending, of a fluid, which is sorted at times; empty for others.
     at_start: Vec<u32>,
@@ -37,18 +36,20 @@ impl Part {
         !self.at_start.is_empty()
     }
 
-    /// Where a load on the particles is evaluated: at their reference positions; in a fluid, which has no
-    /// reference, where they are now in the domain.
+    /// Takes the places of a fluid, which has no reference, as they are now in the domain: the points at which
+    /// loads on it are evaluated.
     ///
     /// # Errors
     /// The phase has no positions.
-    pub fn places(&self, world: &World) -> Result<Cow<'_, [DVec3]>, MissingColumn> {
-        if !self.flows() {
-            return Ok(Cow::Borrowed(&self.points));
+    pub fn flow(&mut self, world: &World) -> Result<(), MissingColumn> {
+        if self.flows() {
+            let (view, _) = world.body_view(self.body);
+            let position = view.read::<Position>()?;
+            for (point, &row) in self.points.iter_mut().zip(&self.rows) {
+                *point = self.periodic.wrap(position[row as usize].0);
+            }
         }
-        let (view, _) = world.body_view(self.body);
-        let position = view.read::<Position>()?;
-        Ok(self.rows.iter().map(|&row| self.periodic.wrap(position[row as usize].0)).collect())
+        Ok(())
     }
 
     /// Finds the rows again after the body has been sorted, and puts `along`, one value a row or none, into
