@@ -4,7 +4,10 @@
 //! of vtkio (0.6.3) depends on outdated parsers, its successor is a release candidate, it requires an owned
 //! data model, and it does not write `.pvd`. Here columns go from memory to the file unchanged: each particle
 //! is a vertex cell, the XML head states the offset of each array, and the arrays follow as raw little-endian
-//! bytes ("appended, raw"), each after its length as 64-bit number.
+//! bytes ("appended, raw"), each after its length as 64-bit number. They follow from the last to the first:
+//! meshio 5 looks an array up by its offset, and takes the first of the head, while it replaces the offsets of
+//! those that it has read by others. In the order of the head another one could have that number by then, and
+//! two vectors and two numbers, or a tensor and a vector, came out as each other.
 //!
 //! Format: VTK file formats, section "XML file formats", versions 1.0 (`UnstructuredGrid`) and 0.1
 //! (`Collection`).
@@ -136,7 +139,7 @@ pub fn write_vtu(
     Ok(())
 }
 
-/// The head of a file under construction, which counts where the appended arrays will lie.
+/// The head of a file under construction, which counts down where the appended arrays will lie.
 struct Head {
     xml: String,
     offset: usize,
@@ -150,17 +153,20 @@ impl Head {
 
     /// Announces an array of `bytes` bytes; `shape` are further attributes.
     fn array(&mut self, type_name: &str, name: &str, shape: &str, bytes: usize) {
+        self.offset -= size_of::<u64>() + bytes;
         let (name, offset) = (escaped(name), self.offset);
         self.line(&format!(
             r#"<DataArray type="{type_name}" Name="{name}" {shape} format="appended" offset="{offset}"/>"#
         ));
-        self.offset += size_of::<u64>() + bytes;
     }
 }
 
 fn write_grid(w: &mut dyn Write, time: f64, points: &[[f64; 3]], arrays: &[PointArray]) -> io::Result<()> {
     let n = points.len();
-    let mut head = Head { xml: String::new(), offset: 0 };
+    let of_arrays: usize = arrays.iter().map(|array| array.values.bytes().len()).sum();
+    // Time, arrays, points, and what makes a cell of each point.
+    let bytes = 8 + of_arrays + size_of_val(points) + (8 + 8 + 1) * n;
+    let mut head = Head { xml: String::new(), offset: (arrays.len() + 5) * size_of::<u64>() + bytes };
     head.line(r#"<?xml version="1.0"?>"#);
     head.line(
         r#"<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">"#,
@@ -183,14 +189,14 @@ fn write_grid(w: &mut dyn Write, time: f64, points: &[[f64; 3]], arrays: &[Point
     head.xml.push('_');
     w.write_all(head.xml.as_bytes())?;
 
-    append(w, &time.to_le_bytes())?;
-    arrays.iter().try_for_each(|array| append(w, array.values.bytes()))?;
-    append(w, bytemuck::cast_slice(points))?;
-    let first_points: Vec<i64> = (0..n as i64).collect();
-    append(w, bytemuck::cast_slice(&first_points))?;
+    append(w, &vec![VTK_VERTEX; n])?;
     let ends: Vec<i64> = (1..=n as i64).collect();
     append(w, bytemuck::cast_slice(&ends))?;
-    append(w, &vec![VTK_VERTEX; n])?;
+    let first_points: Vec<i64> = (0..n as i64).collect();
+    append(w, bytemuck::cast_slice(&first_points))?;
+    append(w, bytemuck::cast_slice(points))?;
+    arrays.iter().rev().try_for_each(|array| append(w, array.values.bytes()))?;
+    append(w, &time.to_le_bytes())?;
     w.write_all(b"\n</AppendedData>\n</VTKFile>\n")
 }
 

@@ -39,8 +39,10 @@ fn read(path: &Path) -> (String, Vec<(String, String, Vec<u8>)>) {
     let whole = format!("{head}</AppendedData></VTKFile>");
 
     let mut next = 0;
-    let arrays = elements(&whole)
+    // The last of the head comes first: see the notes on meshio.
+    let mut arrays: Vec<(String, String, Vec<u8>)> = elements(&whole)
         .into_iter()
+        .rev()
         .filter(|element| element.starts_with("DataArray "))
         .map(|element| {
             assert_eq!(attribute(element, "format"), "appended");
@@ -53,6 +55,7 @@ fn read(path: &Path) -> (String, Vec<(String, String, Vec<u8>)>) {
         })
         .collect();
     assert_eq!(next, data.len());
+    arrays.reverse();
     (whole, arrays)
 }
 
