@@ -180,7 +180,8 @@ impl RowPass<1, 8> for Mean<'_> {
 }
 
 /// The pass that computes the change of volume over the volume by the displacements, `sum_j V_j (dx_j - dx_i)
-/// . grad_i W` halfway along them. All that is not of the body stays where it is.
+/// . grad_i W` halfway along them, over the body itself: what a wall does against displacements toward it is
+/// no work of its, and would feed the flow.
 struct Dilation<'a> {
     cloud: &'a FlowCloud,
     rows: Range<usize>,
@@ -191,12 +192,12 @@ impl RowPass<1, 1> for Dilation<'_> {
     type Output = f64;
 
     fn among(&self) -> Range<usize> {
-        self.cloud.everything()
+        self.rows.clone()
     }
 
     #[inline(always)]
     fn reads(&self, row: usize) -> [DVec3; 1] {
-        [if self.rows.contains(&row) { self.moves[row - self.rows.start] } else { DVec3::ZERO }]
+        [self.moves[row - self.rows.start]]
     }
 
     #[inline(always)]
