@@ -36,8 +36,8 @@ impl Part {
         !self.at_start.is_empty()
     }
 
-    /// Takes the places of a fluid, which has no reference, as they are now in the domain: the points at which
-    /// loads on it are evaluated.
+    /// Takes the places of a fluid, which has no reference, as they are now in the domain: there loads on it
+    /// are evaluated.
     ///
     /// # Errors
     /// The phase has no positions.
