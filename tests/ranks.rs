@@ -208,6 +208,31 @@ fn probes_and_neighbours_of_a_flow_are_those_of_one_rank() {
     }
 }
 
+/// Stress at the free side of a strip that a traction bends: its forces are those of particles of all ranks.
+#[test]
+fn stress_at_a_surface_is_that_of_one_rank() {
+    let text = r#"(dimension: Two, materials: {"m": NeoHookean(density: 1000.0, young: 1e6, poisson: 0.3)},
+        bodies: [(name: "strip", material: "m", shape: Box(min: (0, 0), max: (1.6, 0.1)), spacing: 0.0125, formulation: TotalLagrangian)],
+        conditions: [Fix(on: Select(body: "strip", face: MinX)), Traction(on: Select(body: "strip", face: MaxX), value: (0, 1e3))],
+        probes: [
+            Probe(name: "sides", on: Select(body: "strip", surface: Facing((0, 1))), take: Maximum, quantity: Field("von_mises")),
+            Probe(name: "depth", line: (from: (0.8, 0.1), to: (0.8, 0.05), points: 4), follows: "strip", quantity: Field("stress.xx")),
+        ],
+        time: (end: 1.0))"#;
+    let look = || {
+        let mut sim = simulation(&Source::new("bent.ron", text));
+        sim.run(|sim| sim.clock().step < 60).expect("a run");
+        let of = |probe: &str| sim.measure(probe).expect("a stress");
+        of("sides").into_iter().chain(of("depth")).map(|(_, value)| value.to_bits()).collect::<Vec<_>>()
+    };
+    let alone = look();
+    assert!(alone.iter().any(|&bits| f64::from_bits(bits).abs() > 1.0));
+    for size in [2, 3] {
+        let seen = on_ranks(size, 1, |_| look());
+        assert!(seen.iter().all(|of_rank| *of_rank == alone), "{size} ranks");
+    }
+}
+
 #[test]
 fn flows_with_bodies() {
     assert_equal_bits("coupled", &coupled(), 150);

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::points::{SurfacePoint, SurfacePoints};
+use super::points::{FreePoint, SurfacePoints};
 use super::shifts::shifts;
 use crate::fields::ChosenField;
 use crate::kernels::Kernel;
@@ -98,7 +98,7 @@ impl MeasuredPoints<'_> {
         let mut found = near.into_iter().zip(feet);
         let point = |place: &Option<SurfacePlace>| {
             let (place, (stencil, foot)) = (place.as_ref()?, found.next()?);
-            Some(SurfacePoint {
+            Some(FreePoint {
                 normal: place.normal,
                 fade: (1.0 - place.depth / (SECOND * body.spacing)).max(0.0),
                 stencil: stencil?.moved(shift, &maps),

@@ -17,7 +17,7 @@ use crate::world::{
 const PUSHED: [f64; 2] = [0.05, 0.2];
 
 /// A point at or below a free surface.
-pub(super) struct SurfacePoint {
+pub(super) struct FreePoint {
     /// Outward normal in the reference configuration.
     pub normal: DVec3,
     /// Share of the traction found at the surface that the stress has here.
@@ -37,7 +37,7 @@ pub(in crate::record::probe) struct SurfacePoints {
     pub(super) flows: bool,
     /// By which the body goes on beyond symmetry planes and periods.
     pub(super) maps: Vec<Map>,
-    pub(super) points: Vec<Option<SurfacePoint>>,
+    pub(super) points: Vec<Option<FreePoint>>,
 }
 
 /// Stress at a point of a free surface.
@@ -63,14 +63,14 @@ impl SurfacePoints {
     ) -> Result<Option<SurfaceStress>, MissingColumn> {
         let Some(point) = &self.points[k] else { return Ok(None) };
         let axes = world.dimension().count();
-        let foot = Near::read(self, world, point.foot.shares_of_images(axes, there))?;
+        let foot = StressesNearby::read(self, world, point.foot.shares_of_images(axes, there))?;
         let share = foot.free(axes);
         if share == 0.0 {
             return Ok(None);
         }
         let normal = (foot.deformation().inverse().transpose() * point.normal).normalize_or_zero();
         let of_traction = self.of_traction(&foot.stress(), normal) * point.fade;
-        let near = Near::read(self, world, point.stencil.shares_of_images(axes, there))?;
+        let near = StressesNearby::read(self, world, point.stencil.shares_of_images(axes, there))?;
         Ok(Some(SurfaceStress { stress: Sym3::symmetric_part(near.stress() - of_traction), share }))
     }
 
@@ -88,7 +88,7 @@ impl SurfacePoints {
 }
 
 /// The particles near a point.
-struct Near {
+struct StressesNearby {
     shares: Vec<f64>,
     deformation: Vec<DMat3>,
     stress: Vec<DMat3>,
@@ -100,7 +100,7 @@ struct Near {
     is_bound: bool,
 }
 
-impl Near {
+impl StressesNearby {
     fn read(
         points: &SurfacePoints,
         world: &World,
