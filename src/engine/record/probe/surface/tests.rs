@@ -6,8 +6,8 @@ use super::shifts::shift;
 use crate::kernels::{Kernel, KernelName};
 use crate::record::probe::tests::first_of;
 
-/// A strip of 0.3 x 0.1 m, `across` particles thick, with these displacements and conditions, and one probe of
-/// the stress along x.
+/// The stress along x that a probe finds in a strip of 0.3 x 0.1 m, `across` particles thick, with these
+/// displacements and conditions.
 fn strip(body: &str, poisson: f64, across: u32, fields: [&str; 2], conditions: &str, probe: &str) -> f64 {
     let ([ux, uy], spacing) = (fields, 0.1 / f64::from(across));
     let found = first_of(format!(
