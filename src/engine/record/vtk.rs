@@ -5,9 +5,9 @@
 //! data model, and it does not write `.pvd`. Here columns go from memory to the file unchanged: each particle
 //! is a vertex cell, the XML head states the offset of each array, and the arrays follow as raw little-endian
 //! bytes ("appended, raw"), each after its length as 64-bit number. They follow from the last to the first:
-//! meshio 5 looks an array up by its offset, and takes the first of the head, while it replaces the offsets of
-//! those that it has read by others. In the order of the head another one could have that number by then, and
-//! two vectors and two numbers, or a tensor and a vector, came out as each other.
+//! meshio 5 looks arrays up by their offsets, and takes the first of the head that has one, while it replaces
+//! those of the arrays that it has read. In the order of the head another array could have that number by
+//! then: of two vectors and two numbers, or of a tensor and a vector, some came out as others, or as corrupt.
 //!
 //! Format: VTK file formats, section "XML file formats", versions 1.0 (`UnstructuredGrid`) and 0.1
 //! (`Collection`).
