@@ -6,6 +6,7 @@ use common::simulation;
 use meshless::plugin::EntryKind;
 use meshless::scene::Source;
 use meshless::standard_plugins;
+use meshless::world::BodyId;
 
 /// What the bodies are made of that a plugin is meant for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -99,4 +100,20 @@ fn all_plugins_of_fluids_run_together_on_two_fluids() {
     let all = "density_diffusion(), particle_shifting(), tensile_control(), xsph(), artificial_viscosity(alpha: 0.02), local_damping(rate: 1.0)";
     let mut sim = simulation(&scene(Of::Fluids, all, all));
     sim.run(|sim| sim.clock().step < 20).expect("a run");
+}
+
+/// Each of two fluids is displaced by a plugin of its own: their energies have accounts of their own.
+#[test]
+fn displaced_fluids_have_accounts_of_their_own() {
+    for (first, second) in [("xsph()", "particle_shifting()"), ("particle_shifting()", "xsph()")] {
+        let mut sim = simulation(&scene(Of::Fluids, first, second));
+        sim.run(|sim| sim.clock().step < 20).expect("a run");
+        let of = |plugin: &str, body: usize| {
+            let accounts = sim.ledger().accounts();
+            let account = accounts.iter().find(|account| plugin.starts_with(&account.name));
+            account.expect("an account").of(BodyId(body))
+        };
+        assert!(of(first, 0) != 0.0 || of(second, 1) != 0.0, "{first} {second}: nothing is booked");
+        assert_eq!((of(first, 1), of(second, 0)), (0.0, 0.0), "{first} {second}");
+    }
 }

@@ -63,7 +63,7 @@ impl Plugin for ParticleShifting {
             return Ok(());
         }
         sim.add_column_to::<DensityShift>(&bodies);
-        sim.leave_note(DisplacementAccount(SHIFTING_ENERGY));
+        sim.leave_note(DisplacementAccount { bodies: bodies.clone(), name: SHIFTING_ENERGY });
         sim.add_column_to::<PendingDilation>(&bodies);
         let own = bodies.iter().map(|id| (id, self.strength));
         // Displacements of one fluid change the volumes of its neighbours: one system serves all bodies,

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use meshless_engine::correction::{add_moment, moment_of};
+use meshless_engine::correction::{add_gradient, add_moment, moment_of};
 use meshless_engine::formulations::fluid::{FlowCloud, NearPairs, RowPass, smallest_eigenvalue};
 use meshless_engine::glam::{DMat3, DVec3};
 use meshless_engine::parallel::{Arithmetic, Vector};
@@ -68,12 +68,7 @@ impl RowPass<1, 9> for Locals<'_> {
         add_moment([xx, yy, zz], weight, near.x_ij);
         *first_moment = near.x_ij.mul_add(weight * (1.0 + CLOSE * close), *first_moment);
         filled.x += near.volume * near.kernel;
-        let v_ij = *other - *own;
-        *along_x = near.x_ij.mul_add(weight * v_ij.x, *along_x);
-        *along_y = near.x_ij.mul_add(weight * v_ij.y, *along_y);
-        if A::AXES == 3 {
-            *along_z = near.x_ij.mul_add(weight * v_ij.z, *along_z);
-        }
+        add_gradient([along_x, along_y, along_z], weight, near.x_ij, *other - *own);
         if !near.is_fluid {
             *toward_walls = near.x_ij.mul_add(weight, *toward_walls);
         }

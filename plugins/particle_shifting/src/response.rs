@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use meshless_engine::formulations::fluid::{DensityShift, FlowCloud, NearPairs, RowPass};
 use meshless_engine::glam::DVec3;
-use meshless_engine::parallel::{Arithmetic, Number, Vector, sum_over_blocks};
+use meshless_engine::parallel::{Arithmetic, Vector, sum_over_blocks};
 use meshless_engine::schedule::{Step, StepError};
 use meshless_engine::world::{BodyId, Density, Mass, Removed, Velocity};
 
@@ -24,8 +24,7 @@ const RETURN: f64 = 1.0;
 pub struct ShiftResponse {
     /// Change of its velocity, m/s: its new place has another.
     pub velocity: DVec3,
-    /// Change of volume over volume by the displacements, `sum_j V_j (dx_j - dx_i) . grad_i W` halfway along
-    /// them.
+    /// Change of volume over volume by the displacements.
     pub dilation: f64,
     /// Excess of volume as a mean over its neighbours.
     pub excess: f64,
@@ -66,11 +65,7 @@ impl RowPass<4, 3> for Responses<'_> {
         [v_j, dx_j, other, inside]: &[Vector<A>; 4],
         [velocity, dilation_and_excess, shared]: &mut [Vector<A>; 3],
     ) {
-        let a = near.weight.arithmetic();
-        let apart = *dx_j - *dx_i;
-        let middle = apart.mul_add(Number::splat(a, 0.5), near.x_ij);
-        let weight = self.cloud.kernel.weights(a, middle.length_squared().sqrt().lanes());
-        dilation_and_excess.x += near.volume * Number::new(a, weight) * apart.dot(middle);
+        dilation_and_excess.x += near.dilation(&self.cloud.kernel, *dx_i, *dx_j);
         if near.is_fluid {
             let both = *dx_i + *dx_j;
             let moved = near.volume * near.weight * 0.5 * both.dot(near.x_ij);

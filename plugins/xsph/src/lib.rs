@@ -10,14 +10,14 @@
 
 use std::ops::Range;
 
-use meshless_engine::correction::{add_moment, moment_of};
+use meshless_engine::correction::{add_gradient, add_moment, moment_of};
 use meshless_engine::formulations::fluid::{
     DensityShift, DisplacementAccount, FLOW_RECORDS, FlowCloud, NearPairs, Repayment, RowPass, RowSums,
     displace,
 };
 use meshless_engine::glam::DVec3;
 use meshless_engine::materials::ParameterError;
-use meshless_engine::parallel::{Arithmetic, Number, Vector};
+use meshless_engine::parallel::{Arithmetic, Vector};
 use meshless_engine::plugin::{BodyKind, Plugin, Registry, SetupError, SimBuilder};
 use meshless_engine::schedule::{Mode, Run, Stage, Step, StepError, System};
 use meshless_engine::world::{BodySet, Density, Mass, Position, Removed, Velocity};
@@ -62,7 +62,7 @@ impl Plugin for Xsph {
             return Ok(());
         }
         sim.add_column_to::<DensityShift>(&bodies);
-        sim.leave_note(DisplacementAccount(Self::NAME));
+        sim.leave_note(DisplacementAccount { bodies: bodies.clone(), name: Self::NAME });
         let gravity = sim.gravity();
         let work = XsphSystem {
             epsilon: self.epsilon,
@@ -159,11 +159,7 @@ impl RowPass<1, 8> for Mean<'_> {
     ) {
         let (weight, share, v_ij) = (near.volume * near.weight, near.volume * near.kernel, *other - *own);
         add_moment([xx, yy, zz], weight, near.x_ij);
-        *along_x = near.x_ij.mul_add(weight * v_ij.x, *along_x);
-        *along_y = near.x_ij.mul_add(weight * v_ij.y, *along_y);
-        if A::AXES == 3 {
-            *along_z = near.x_ij.mul_add(weight * v_ij.z, *along_z);
-        }
+        add_gradient([along_x, along_y, along_z], weight, near.x_ij, v_ij);
         *middle = near.x_ij.mul_add(share, *middle);
         *sum = v_ij.mul_add(share, *sum);
     }
@@ -208,11 +204,7 @@ impl RowPass<1, 1> for Dilation<'_> {
         [other]: &[Vector<A>; 1],
         [sum]: &mut [Vector<A>; 1],
     ) {
-        let a = near.weight.arithmetic();
-        let apart = *other - *own;
-        let middle = apart.mul_add(Number::splat(a, 0.5), near.x_ij);
-        let weight = self.cloud.kernel.weights(a, middle.length_squared().sqrt().lanes());
-        sum.x += near.volume * Number::new(a, weight) * apart.dot(middle);
+        sum.x += near.dilation(&self.cloud.kernel, *own, *other);
     }
 
     #[inline(always)]

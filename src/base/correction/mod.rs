@@ -14,4 +14,4 @@ mod tests;
 
 pub use affine::AffineFit;
 pub use moment::{MomentMatrix, SINGULAR};
-pub use moments::{add_moment, moment_of};
+pub use moments::{add_gradient, add_moment, moment_of};

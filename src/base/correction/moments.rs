@@ -19,6 +19,22 @@ pub fn add_moment<A: Arithmetic>([x, y, z]: [&mut Vector<A>; 3], volume_weight: 
     }
 }
 
+/// Adds neighbours by `V_j w_ij` (m^-2), `x_ij` (m) and the difference of a vector to the rows of `sum_j V_j
+/// w_ij u_ij (x) x_ij`, which over the moment matrix is the gradient of that vector.
+#[inline(always)]
+pub fn add_gradient<A: Arithmetic>(
+    [x, y, z]: [&mut Vector<A>; 3],
+    volume_weight: Number<A>,
+    x_ij: Vector<A>,
+    u_ij: Vector<A>,
+) {
+    *x = x_ij.mul_add(volume_weight * u_ij.x, *x);
+    *y = x_ij.mul_add(volume_weight * u_ij.y, *y);
+    if A::AXES == 3 {
+        *z = x_ij.mul_add(volume_weight * u_ij.z, *z);
+    }
+}
+
 /// The moment matrix of the sums of [`add_moment`], in two or three dimensions.
 #[inline(always)]
 pub fn moment_of([x, y, z]: [DVec3; 3], plane: bool) -> MomentMatrix {

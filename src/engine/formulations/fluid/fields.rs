@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use crate::correction::{MomentMatrix, add_moment, moment_of};
+use crate::correction::{MomentMatrix, add_gradient, add_moment, moment_of};
 use crate::fields::Field;
 use crate::formulations::fluid::cloud::{
     ArrangementPass, FlowCloud, Near, NearPairs, RowPass, RowSums, smallest_eigenvalue,
@@ -76,10 +76,7 @@ impl RowPass<1, 6> for Vorticity<'_> {
     ) {
         let weight = near.volume * near.weight;
         add_moment([xx, yy, zz], weight, near.x_ij);
-        let (weighed, v_ij) = (near.x_ij * weight, *other - *own);
-        *along_x = weighed.mul_add(v_ij.x, *along_x);
-        *along_y = weighed.mul_add(v_ij.y, *along_y);
-        *along_z = weighed.mul_add(v_ij.z, *along_z);
+        add_gradient([along_x, along_y, along_z], weight, near.x_ij, *other - *own);
     }
 
     #[inline(always)]

@@ -5,9 +5,7 @@ use crate::formulations::fluid::cloud::{
     NEIGHBORS, Neighbors, REPELLED, Role, SPINS,
 };
 use crate::formulations::fluid::coupling::add_force_on_bodies;
-use crate::formulations::fluid::density::{
-    ApplyState, Continuity, DensityShift, DisplacementAccount, SHIFTING_ENERGY,
-};
+use crate::formulations::fluid::density::{ApplyState, Continuity, DensityShift, DisplacementAccount};
 use crate::formulations::fluid::moments::{SurfaceMoments, SurfaceStretching};
 use crate::formulations::fluid::passes::{Compression, FLUID_FORCE, FlowForce, reads_flow};
 use crate::formulations::fluid::rotation::Spin;
@@ -180,8 +178,7 @@ fn add_boundary_rates(sim: &mut SimBuilder<'_>, groups: &[Group], fluid: PhaseId
 
 /// Adds what turns compression into density, with its energy in an account, and density into pressure.
 fn add_state(sim: &mut SimBuilder<'_>, fluid: PhaseId, account: Option<String>) {
-    let notes = sim.take_extensions::<DisplacementAccount>();
-    let displacements = notes.first().map_or(SHIFTING_ENERGY, |note| note.0);
+    let displacements = sim.take_extensions::<DisplacementAccount>();
     let continuity = Continuity { account, displacements, sums: Vec::new() };
     let is_shifted = sim.columns(fluid).get(DensityShift::NAME).is_some();
     let shift = is_shifted.then_some(Access { column: DensityShift::NAME, mode: Mode::Writes });

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
+use crate::formulations::fluid::lanes::FluidKernel;
 use crate::parallel::{Arithmetic, Number, Vector};
 
 /// Pairs as a [`RowPass`] sees them: a lane is a neighbour of one particle, or, with sums in single
@@ -25,6 +26,19 @@ pub struct NearPairs<A: Arithmetic> {
     pub kernel: Number<A>,
     /// Volume V_j, m3; zero for a removed particle.
     pub volume: Number<A>,
+}
+
+impl<A: Arithmetic> NearPairs<A> {
+    /// Change of volume over the volume by displacements of particle and neighbour, m: `V_j (dx_j - dx_i) .
+    /// grad_i W` halfway along them, of second order.
+    #[inline(always)]
+    pub fn dilation(&self, kernel: &FluidKernel, dx_i: Vector<A>, dx_j: Vector<A>) -> Number<A> {
+        let a = self.weight.arithmetic();
+        let apart = dx_j - dx_i;
+        let middle = apart.mul_add(Number::splat(a, 0.5), self.x_ij);
+        let weight = kernel.weights(a, middle.length_squared().sqrt().lanes());
+        self.volume * Number::new(a, weight) * apart.dot(middle)
+    }
 }
 
 /// Sums over the neighbours of every particle, in `SUMS` vectors, that read `READS` vectors of each. In the

@@ -6,7 +6,7 @@ use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud, FluidState};
 use crate::parallel::{BlockSum, FourLanes, HotLoop, for_each_own_block, run_hot};
 use crate::removal::REMOVED_ENERGY;
 use crate::schedule::{AccountKind, Run, Step, StepError};
-use crate::world::{Density, DensityRate, Mass, Removed};
+use crate::world::{BodySet, Density, DensityRate, Mass, Removed};
 
 crate::column! {
     /// Change of the density of a fluid that is still to follow from displacements beside the flow, in the
@@ -17,16 +17,21 @@ crate::column! {
 /// Account of the energy that shifting takes out of fluids, by their weight and by the density that follows.
 pub const SHIFTING_ENERGY: &str = "particle_shifting";
 
-/// Note of a plugin that displaces particles: the account of the energy that the density takes out of fluids
-/// as it follows. Of several plugins it is that of the first.
-pub struct DisplacementAccount(pub &'static str);
+/// Note of a plugin that displaces particles: the account of the energy that the density takes out of these
+/// fluids as it follows. Of several plugins of a fluid it is that of the first.
+pub struct DisplacementAccount {
+    /// Fluids.
+    pub bodies: BodySet,
+    /// Name of the account.
+    pub name: &'static str,
+}
 
 /// Moves the density by the rate of compression, and by what pair terms found at the end of the step before.
 pub struct Continuity {
     /// Account of the energy that pair terms take out by changing the density; none where no term does.
     pub account: Option<String>,
-    /// Account of the energy that displacements take out by changing the density.
-    pub displacements: &'static str,
+    /// Accounts of the energy that displacements take out by changing the density.
+    pub displacements: Vec<DisplacementAccount>,
     pub sums: Vec<Change>,
 }
 
@@ -94,9 +99,10 @@ impl Run for Continuity {
                 let account = step.ledger.account(REMOVED_ENERGY, AccountKind::Dissipated);
                 step.ledger.add(account, group.body, change.removed);
             }
-            if let Some(shift) = &mut shift {
+            let displaced = self.displacements.iter().find(|by| by.bodies.contains(group.body));
+            if let (Some(shift), Some(by)) = (&mut shift, displaced) {
                 shift[group.rows.clone()].fill(DensityShift(0.0));
-                let account = step.ledger.account(self.displacements, AccountKind::Dissipated);
+                let account = step.ledger.account(by.name, AccountKind::Dissipated);
                 step.ledger.add(account, group.body, change.shifted);
             }
             if of_boundaries.is_some() {
