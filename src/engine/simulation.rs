@@ -19,12 +19,14 @@ mod closing;
 mod inputs;
 mod sub_steps;
 mod summary;
+mod uniform_motion;
 
 pub use checkpoint::{Checkpoint, RestoreError, SaveError};
 pub use summary::{Outcome, Summary};
 
 use inputs::Inputs;
 use sub_steps::SubSteps;
+use uniform_motion::UniformMotion;
 
 /// A simulation that is ready to run.
 pub struct Simulation {
@@ -35,6 +37,7 @@ pub struct Simulation {
     end: f64,
     step_rule: scene::StepRule,
     ledger: Ledger,
+    uniform_motion: UniformMotion,
     limits: TimeStepLimits,
     next_limit: Option<Limit>,
     /// The first limit of this program, s.
@@ -155,6 +158,7 @@ impl Simulation {
         } = parts;
         Self {
             ledger: Ledger::new(world.bodies().len()),
+            uniform_motion: UniformMotion::new(scene),
             world,
             resources,
             schedule,
@@ -270,7 +274,8 @@ impl Simulation {
         // With dt = 0 the last kick only sets prescribed velocities and takes the energies.
         self.start_short_steps()?;
         self.run_stages(|stage| stage.is_right_hand_side() || stage == Stage::FinalIntegrate)?;
-        self.ledger.open();
+        let drift = self.uniform_motion.at_start(&self.world, &self.resources, &self.ledger);
+        self.ledger.open(drift.map_err(StepError::from)?);
         self.take_limit();
         self.check_fixed_step();
         self.run_stages(|stage| stage == Stage::Record)?;
@@ -295,6 +300,9 @@ impl Simulation {
         self.run_stages(|stage| stage > Stage::InitialIntegrate && stage != Stage::Record)?;
         self.clock.time = if self.ends_here() { self.end } else { self.clock.end() };
         self.clock.step += 1;
+        let motion = &self.uniform_motion;
+        let follows = motion.follow(self.clock.dt, &self.world, &self.resources, &mut self.ledger);
+        follows.map_err(StepError::from)?;
         self.ledger.close_step();
         self.require_equal_ledgers()?;
         self.take_limit();

@@ -7,7 +7,8 @@ mod system;
 #[cfg(test)]
 mod tests;
 
+pub use crate::schedule::REMOVED_ENERGY;
 pub(crate) use domain::DomainBox;
 pub(crate) use leaving::{LEAVING, LeavingParticles};
 pub use rule::RemovalRule;
-pub use system::{REMOVAL, REMOVED_ENERGY, add_system};
+pub use system::{REMOVAL, add_system};

@@ -15,15 +15,12 @@ use crate::parallel::{Picked, sum_over_blocks};
 use crate::plugin::SimBuilder;
 use crate::rigid::{RIGID_BODIES, take_out};
 use crate::scene::Outside;
-use crate::schedule::{Access, AccountKind, Mode, Run, Stage, Step, StepError, System};
+use crate::schedule::{Access, AccountKind, Mode, REMOVED_ENERGY, Run, Stage, Step, StepError, System};
 use crate::world::{BodyId, Force, Mass, Mobility, PhaseView, Position, Removed, Velocity, sum_by_row};
 
 /// Label of the system of stage [`Stage::Neighbors`] that removes particles. It is always there: lists of
 /// neighbours are made `.after(REMOVAL)`.
 pub const REMOVAL: &str = "removal";
-
-/// Account of the energy that leaves with removed particles.
-pub const REMOVED_ENERGY: &str = "removed";
 
 impl SimBuilder<'_> {
     /// Adds a rule that removes particles, looked at in every step after the drift and before lists and

@@ -1,7 +1,9 @@
 //! The energy ledger: stored, supplied and dissipated energies, per body.
 
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
+use super::drift::Drift;
 use crate::world::BodyId;
 
 /// Kind of the energy in an account.
@@ -18,6 +20,12 @@ pub enum AccountKind {
 /// Account of the dissipated energy that bodies hold as heat, with a negative sign: a part of plastic work
 /// and friction that is not lost.
 pub const INTO_HEAT: &str = "into_heat";
+
+/// Account of the energy that removed particles take along.
+pub const REMOVED_ENERGY: &str = "removed";
+
+const KINETIC: &str = "kinetic";
+const GRAVITY: &str = "gravity";
 
 /// Name and kind of the account of a system.
 #[derive(Clone, Copy, Debug)]
@@ -56,6 +64,8 @@ pub struct Ledger {
     resolution: f64,
     /// Number of the system that runs.
     system: u32,
+    /// Uniform motion of the scene; none if it is at rest.
+    drift: Option<Drift>,
 }
 
 impl Ledger {
@@ -140,8 +150,9 @@ impl Ledger {
     }
 
     /// Opens the energy balance: the currently stored energy is that at the start, and nothing is supplied or
-    /// dissipated yet.
-    pub fn open(&mut self) {
+    /// dissipated yet. The scene as a whole moves by `drift`.
+    pub(crate) fn open(&mut self, drift: Option<Drift>) {
+        self.drift = drift;
         for account in self.accounts.iter_mut().filter(|account| account.kind != AccountKind::Stored) {
             account.per_body.fill(0.0);
         }
@@ -149,10 +160,74 @@ impl Ledger {
         self.close_step();
     }
 
-    /// Closes a step: takes the scale of the balance error.
+    /// Closes a step: takes the scale of the balance error. Particles that have left have done so through a
+    /// border at rest: from then on no motion is uniform.
     pub fn close_step(&mut self) {
-        let turnover = self.accounts.iter().map(|a| a.per_body.iter().sum::<f64>().abs());
-        self.largest = turnover.fold(self.largest, f64::max);
+        if self.total_named(REMOVED_ENERGY) != 0.0 {
+            self.drift = None;
+        }
+        let resolution = self.drift.as_ref().map_or(0.0, Drift::resolution);
+        let turnover = self.accounts.iter().map(|account| self.relative(account).abs());
+        self.largest = turnover.fold(self.largest, f64::max).max(self.other_work().abs()).max(resolution);
+        self.set_resolution(resolution);
+    }
+
+    /// The uniform motion of the scene, if there is one.
+    pub(crate) fn drift(&self) -> Option<&Drift> {
+        self.drift.as_ref()
+    }
+
+    /// Velocity of the frame in which energies are compared, m/s.
+    pub fn frame(&self) -> DVec3 {
+        self.drift.as_ref().map_or(DVec3::ZERO, |drift| drift.velocity)
+    }
+
+    /// The uniform motion, whose energies the caller states anew in every step.
+    pub(crate) fn drift_mut(&mut self) -> Option<&mut Drift> {
+        self.drift.as_mut()
+    }
+
+    /// Energy of an account without what the uniform motion of the scene adds, J. Where there is one, zero for
+    /// the work of forces other than gravity, which has no other frame than all together.
+    fn relative(&self, account: &Account) -> f64 {
+        let Some(drift) = &self.drift else { return account.total() };
+        match (account.name.as_str(), account.kind) {
+            (KINETIC, _) => account.total() - drift.total(),
+            (GRAVITY, _) => account.total() - drift.gravity,
+            (_, AccountKind::Supplied) => 0.0,
+            _ => account.total(),
+        }
+    }
+
+    /// Work of forces other than gravity, without that which the uniform motion of the scene adds, J; zero
+    /// where there is no such motion.
+    fn other_work(&self) -> f64 {
+        let Some(drift) = &self.drift else { return 0.0 };
+        let is_other = |account: &&Account| account.kind == AccountKind::Supplied && account.name != GRAVITY;
+        let work: f64 = self.accounts.iter().filter(is_other).map(Account::total).sum();
+        work - drift.others()
+    }
+
+    /// Kinetic energy of all bodies without that of the uniform motion of the scene, J.
+    pub fn motion(&self) -> f64 {
+        self.total_named(KINETIC) - self.drift.as_ref().map_or(0.0, Drift::total)
+    }
+
+    /// What the uniform motion of the scene adds to an account of a body, J, if that is known.
+    pub fn drift_of(&self, account: &Account, body: BodyId) -> f64 {
+        let is_kinetic = account.name == KINETIC;
+        self.drift.as_ref().filter(|_| is_kinetic).map_or(0.0, |drift| drift.kinetic[body.0])
+    }
+
+    /// Magnitudes of the works on all bodies, added up, without what the uniform motion of the scene adds, J.
+    pub fn turnover(&self) -> f64 {
+        let supplied = self.accounts.iter().filter(|account| account.kind == AccountKind::Supplied);
+        supplied.map(|account| self.relative(account).abs()).sum::<f64>() + self.other_work().abs()
+    }
+
+    /// The part of `work` of boundaries, J, that is not spent on the uniform motion of the scene.
+    pub fn without_drift(&self, work: f64) -> f64 {
+        if self.drift.is_some() { self.other_work() } else { work }
     }
 
     /// States a resolution below which energies are round-off, J; the largest stated one counts.
@@ -165,7 +240,7 @@ impl Ledger {
         self.resolution
     }
 
-    /// The largest energy that any account has held, J.
+    /// The largest energy that any account has held, without what the uniform motion of the scene adds, J.
     pub fn largest(&self) -> f64 {
         self.largest
     }
@@ -207,7 +282,7 @@ mod tests {
         let damping = ledger.account("damping", AccountKind::Dissipated);
         ledger.set(kinetic, BodyId(0), 3.0);
         ledger.add(gravity, BodyId(0), 9.0);
-        ledger.open();
+        ledger.open(None);
         ledger.set(kinetic, BodyId(1), 4.0);
         ledger.add(gravity, BodyId(1), 5.0);
         ledger.add(damping, BodyId(1), 1.0);
@@ -223,7 +298,7 @@ mod tests {
         let mut ledger = Ledger::new(1);
         let strain = ledger.account("strain", AccountKind::Stored);
         ledger.set_resolution(1e-8);
-        ledger.open();
+        ledger.open(None);
         ledger.set(strain, BodyId(0), 2e-14);
         ledger.close_step();
         assert!(ledger.relative_error() < 1e-5);

@@ -1,5 +1,6 @@
 //! The step: stages, systems with declared access, their order, and the interface of a running system.
 
+mod drift;
 mod each;
 mod ledger;
 mod limits;
@@ -11,8 +12,9 @@ mod step_part;
 mod system;
 mod trigger;
 
+pub(crate) use drift::Drift;
 pub use each::{Adds, EachRow};
-pub use ledger::{Account, AccountId, AccountKind, EnergyAccount, INTO_HEAT, Ledger};
+pub use ledger::{Account, AccountId, AccountKind, EnergyAccount, INTO_HEAT, Ledger, REMOVED_ENERGY};
 pub use limits::{Limit, TimeStepLimits};
 pub use order::{Schedule, ScheduleError};
 pub use resources::{Resources, Shareable, Shared, SharedValues};

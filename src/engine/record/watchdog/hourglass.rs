@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::notation::quantity;
 use crate::plugin::{BodyPlan, SimBuilder};
-use crate::schedule::{Ledger, Step};
+use crate::schedule::{Account, Ledger, Step};
 use crate::world::BodyId;
 
 /// Hourglass energy over strain energy plus plastic work that is worth a warning. In a beam of n particles
@@ -54,7 +54,8 @@ impl HourglassShare {
         }
         for (k, largest) in self.largest.iter_mut().enumerate() {
             let others = ledger.accounts().iter().filter(|account| account.name != "hourglass");
-            let energies = others.map(|account| account.of(BodyId(k)).abs());
+            let of = |account: &Account| account.of(BodyId(k)) - ledger.drift_of(account, BodyId(k));
+            let energies = others.map(|account| of(account).abs());
             *largest = energies.fold(*largest, f64::max);
         }
     }

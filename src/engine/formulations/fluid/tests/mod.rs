@@ -38,6 +38,8 @@ mod noticing;
 
 mod gaps;
 
+mod moving;
+
 use crate::assembly::build;
 use crate::plugin::Registry;
 use crate::scene::{Source, parse};

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::filling::filling;
 use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud, Group, RowSums};
 use crate::notation::quantity;
-use crate::schedule::{AccountKind, Step};
+use crate::schedule::Step;
 
 /// Particles of a free surface over those of a side of a square, or a cube, of as many particles.
 const SURFACE: f64 = 0.25;
@@ -63,7 +63,7 @@ impl ClosedWatch {
     ) -> Option<String> {
         let taken = step.ledger.total_named(ACCOUNTS[1]);
         // Of noise there is little.
-        let worth = 1e-3 * step.ledger.total_named("kinetic");
+        let worth = 1e-3 * step.ledger.motion();
         if taken <= TAKEN * self.largest || taken <= worth || !is_closed(cloud, scratch) {
             return None;
         }
@@ -86,8 +86,7 @@ impl ClosedWatch {
         scratch: &mut Vec<Option<f64>>,
         step: &Step<'_>,
     ) -> Option<String> {
-        let supplied = step.ledger.accounts().iter().filter(|account| account.kind == AccountKind::Supplied);
-        let work: f64 = supplied.map(|account| account.total().abs()).sum();
+        let work = step.ledger.turnover();
         // The work on a fluid that settles to rest is small.
         let is_worth = self.most > EXCHANGED * work && work > 0.1 * self.largest;
         if !is_worth || !is_closed(cloud, scratch) {

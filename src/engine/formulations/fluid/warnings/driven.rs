@@ -22,7 +22,8 @@ pub fn look(is_told: &mut bool, diffusion: Option<&str>, cloud: &FlowCloud, step
     let walls = || cloud.groups.iter().filter(|group| group.is_wall());
     let supplied = step.ledger.accounts().iter().filter(|account| account.kind == AccountKind::Supplied);
     let driven = supplied.filter(|account| account.name == "constraints");
-    let work: f64 = driven.map(|account| walls().map(|group| account.of(group.body)).sum::<f64>()).sum();
+    let work = driven.map(|account| walls().map(|group| account.of(group.body)).sum::<f64>()).sum();
+    let work = step.ledger.without_drift(work);
     let (taken, largest) = (step.ledger.total_named(diffusion), step.ledger.largest());
     let friction = step.ledger.total_named(ACCOUNTS[0]);
     if taken <= SHARE * largest || work <= WORK * largest || taken <= friction {

@@ -25,6 +25,7 @@ const STILL: f64 = 0.05;
 #[derive(Clone, Serialize, Deserialize)]
 pub struct SeenFrames {
     body: u32,
+    /// In the frame in which energies count, m.
     place: DVec3,
     frames: u32,
 }
@@ -63,7 +64,8 @@ impl HeldDown {
                 });
             let number = body.id.0 as u32;
             let before = self.seen.iter().find(|seen| seen.body == number).cloned();
-            let moved = before.as_ref().map_or(f64::INFINITY, |seen| seen.place.distance(body.state.center));
+            let place = body.state.center - step.clock.time * step.ledger.frame();
+            let moved = before.as_ref().map_or(f64::INFINITY, |seen| seen.place.distance(place));
             let is_still = moved < STILL * spacing;
             let is_light = body.mass < lightest * volume;
             let Some(down) = is_light.then(|| force_on(cloud, body.id).dot(gravity.normalize())) else {
@@ -72,7 +74,7 @@ impl HeldDown {
             let held = is_still && down > 0.0 && is_wet_below(cloud, body.id, gravity.normalize(), spacing);
             let frames = if held { before.map_or(0, |seen| seen.frames) + 1 } else { 0 };
             self.seen.retain(|seen| seen.body != number);
-            self.seen.push(SeenFrames { body: number, place: body.state.center, frames });
+            self.seen.push(SeenFrames { body: number, place, frames });
             if frames == FRAMES {
                 step.warnings.push(format!(
                     "the rigid body `{}` is lighter than the fluid, which presses it down with {} at {}: no particle of the fluid fits between it and what it \

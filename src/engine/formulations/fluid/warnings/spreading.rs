@@ -78,7 +78,7 @@ impl Spreading {
         let Some(since) = self.seen.middle else { return };
         let (grown, lost) = (driving - since.stored, dissipated - since.dissipated);
         // Where stabilizers take more than friction, or much is in motion, the flow is not slow.
-        let is_loud = lost <= step.ledger.total_named("kinetic") || lost <= 0.5 * (all - since.all);
+        let is_loud = lost <= step.ledger.motion() || lost <= 0.5 * (all - since.all);
         if grown.abs() <= SHARE * lost || is_loud || grown.abs() <= OF_REST * whole {
             return;
         }

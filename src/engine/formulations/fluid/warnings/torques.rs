@@ -35,7 +35,9 @@ pub fn look(is_told: &mut bool, cloud: &FlowCloud, step: &mut Step<'_>) {
     if friction <= taken {
         return;
     }
-    let fastest = cloud.records().iter().map(|record| record.velocity().length()).fold(0.0, f64::max);
+    let frame = step.ledger.frame();
+    let speeds = cloud.records().iter().map(|record| record.velocity().distance(frame));
+    let fastest = speeds.fold(0.0, f64::max);
     let turns =
         |group: &&Group| group.sticks() && rim_speed(&cloud.records()[group.cloud.clone()]) > RIM * fastest;
     let Some(group) = cloud.groups.iter().find(turns) else { return };

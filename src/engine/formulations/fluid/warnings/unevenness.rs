@@ -47,7 +47,7 @@ impl Unevenness {
         if !cloud.viscosities.spin {
             return;
         }
-        let is_slow = step.ledger.total_named("viscosity") > step.ledger.total_named("kinetic");
+        let is_slow = step.ledger.total_named("viscosity") > step.ledger.motion();
         for (group, told) in cloud.groups.iter().zip(&mut self.told) {
             // What shifts evens out.
             told[0] |= step.ledger.accounts().iter().any(|account| account.name == SHIFTING_ENERGY);

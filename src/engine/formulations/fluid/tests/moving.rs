@@ -1,0 +1,78 @@
+//! Scenes and walls that move: the energies that are compared, and the warnings, are those at rest.
+
+use super::simulation;
+use crate::simulation::Simulation;
+
+/// Vortices in a periodic box with particles under pressure, seen by someone who moves.
+fn vortices(u: f64, v: f64) -> String {
+    format!(
+        r#"(dimension: Two, domain: (min: (0, 0), max: (1, 1), periodic: [X, Y]),
+            materials: {{"oil": Fluid(density: 1.0, sound_speed: 10.0, viscosity: 0.04)}},
+            bodies: [(name: "oil", material: "oil", shape: Box(min: (0, 0), max: (1, 1)), spacing: 0.0625,
+                formulation: Fluid(pressure: 2.0))],
+            conditions: [InitialVelocity(on: Select(body: "oil"),
+                value: ("{u} - cos(2*pi*x)*sin(2*pi*y)", "{v} + sin(2*pi*x)*cos(2*pi*y)"))],
+            time: (end: 0.7), record: (every: 0.05))"#
+    )
+}
+
+/// A column of water that falls in a tank, beside a log, seen by someone who moves.
+fn tank(u: f64, v: f64) -> String {
+    format!(
+        r#"(dimension: Two, gravity: (0.0, -9.81),
+            materials: {{"water": Fluid(density: 1000.0, sound_speed: 25.0),
+                "wood": NeoHookean(density: 500.0, young: 1.0e6, poisson: 0.3)}},
+            bodies: [
+                (name: "water", material: "water", shape: Box(min: (0, 0), max: (0.2, 0.3)), spacing: 0.025,
+                 formulation: Fluid, velocity: ({u}, {v})),
+                (name: "log", material: "wood", shape: Box(min: (0.3, 0), max: (0.4, 0.1)), spacing: 0.025,
+                 formulation: Rigid(), velocity: ({u}, {v})),
+                (name: "tank", material: "wall", spacing: 0.025, formulation: Wall(), velocity: ({u}, {v}),
+                 shape: Difference(Box(min: (-0.1, -0.1), max: (0.9, 0.6)), Box(min: (0, 0), max: (0.8, 1)))),
+            ],
+            contacts: [(between: ("log", "tank"))],
+            time: (end: 0.25), record: (every: 0.05))"#
+    )
+}
+
+fn ended(text: &str) -> Simulation {
+    let mut sim = simulation(text);
+    sim.run(|_| true).expect("a run");
+    sim
+}
+
+/// The first words of every warning: the numbers in them may differ in the last digits.
+fn subjects(sim: &Simulation) -> Vec<&str> {
+    let mut subjects: Vec<&str> = sim.warnings().iter().map(|text| &text[..text.len().min(30)]).collect();
+    subjects.sort_unstable();
+    subjects
+}
+
+#[test]
+fn a_periodic_flow_that_moves_as_a_whole_is_judged_like_one_at_rest() {
+    let (rest, moving) = (ended(&vortices(0.0, 0.0)), ended(&vortices(3.0, -2.0)));
+    assert!(subjects(&rest).iter().any(|text| text.contains("resist")), "{:?}", rest.warnings());
+    assert_eq!(subjects(&rest), subjects(&moving));
+    for (of_rest, of_moving) in [
+        (rest.ledger().motion(), moving.ledger().motion()),
+        (rest.ledger().largest(), moving.ledger().largest()),
+        (rest.ledger().relative_error(), moving.ledger().relative_error()),
+    ] {
+        let scale = rest.ledger().largest();
+        assert!((of_moving - of_rest).abs() < 1e-4 * scale, "{of_moving} instead of {of_rest}");
+    }
+}
+
+#[test]
+fn a_tank_that_moves_with_its_water_is_judged_like_one_at_rest() {
+    let (rest, moving) = (ended(&tank(0.0, 0.0)), ended(&tank(4.0, 3.0)));
+    assert_eq!(subjects(&rest), subjects(&moving));
+    let scale = rest.ledger().largest();
+    for (of_rest, of_moving) in [
+        (rest.ledger().motion(), moving.ledger().motion()),
+        (scale, moving.ledger().largest()),
+        (rest.ledger().turnover(), moving.ledger().turnover()),
+    ] {
+        assert!((of_moving - of_rest).abs() < 0.01 * scale, "{of_moving} instead of {of_rest}");
+    }
+}
