@@ -76,3 +76,18 @@ fn a_tank_that_moves_with_its_water_is_judged_like_one_at_rest() {
         assert!((of_moving - of_rest).abs() < 0.01 * scale, "{of_moving} instead of {of_rest}");
     }
 }
+
+#[test]
+fn a_body_in_a_tank_that_turns_is_not_in_its_wall() {
+    let turn = r#"("x*(cos(10*t) - 1) - y*sin(10*t)", "x*sin(10*t) + y*(cos(10*t) - 1)")"#;
+    let sim = ended(&format!(
+        r#"(dimension: Two, materials: {{"water": Fluid(density: 1000.0, sound_speed: 20.0), "block": NeoHookean(density: 2000.0, young: 1.0e6, poisson: 0.3)}},
+            bodies: [
+                (name: "water", material: "water", shape: Ring(center: (0, 0), inner: 0.06, outer: 0.2), spacing: 0.02, lattice: Concentric, formulation: Fluid(pressure: 500)),
+                (name: "block", material: "block", shape: Sphere(center: (0, 0), radius: 0.06), spacing: 0.02, lattice: Concentric, formulation: Rigid()),
+                (name: "drum", material: "wall", shape: Ring(center: (0, 0), inner: 0.2, outer: 0.28), spacing: 0.02, lattice: Concentric, formulation: Wall(suction: true)),
+            ],
+            conditions: [Displacement(on: Select(body: "drum"), value: {turn})], time: (end: 0.15))"#
+    ));
+    assert!(!sim.warnings().iter().any(|text| text.contains("is inside of")), "{:?}", sim.warnings());
+}

@@ -1,14 +1,19 @@
 //! Bodies that pass through walls because no contact holds them off.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
+use crate::linalg::dyad;
 use crate::plugin::{BodyKind, SimBuilder};
+use crate::scene::Dimension;
 use crate::schedule::{Step, StepError};
 use crate::shapes::Region;
 use crate::world::{BodyId, ParticleId, Position, ReferencePosition, Removed};
 
 /// Depth of the centre of a particle in a wall from which on it is inside, over its spacing.
 const DEPTH: f64 = 0.25;
+/// Distance of the nearest particle of a wall beyond which a particle is outside of it, over the spacing of
+/// the wall; the middle of a cube is 0.87 away.
+const NEAREST: f64 = 0.9;
 
 /// Checks for particles of bodies inside of walls.
 pub struct PassingWalls {
@@ -22,7 +27,41 @@ struct BodyAndWall {
     body: BodyId,
     wall: BodyId,
     region: Box<dyn Region>,
-    spacing: f64,
+    /// Spacings of body and wall, m.
+    spacings: [f64; 2],
+    is_plane: bool,
+}
+
+/// The affine map that fits the motion of a wall best, back to where its shape was at the start.
+struct WallMotion {
+    map: DMat3,
+    /// Mean positions now and at the start, m.
+    now: DVec3,
+    start: DVec3,
+}
+
+impl WallMotion {
+    /// Of the particles at these places now and at the start.
+    fn of(places: impl Iterator<Item = (DVec3, DVec3)> + Clone, is_plane: bool) -> Option<Self> {
+        let count = places.clone().count() as f64;
+        let sums =
+            places.clone().fold([DVec3::ZERO; 2], |sums, (now, start)| [sums[0] + now, sums[1] + start]);
+        let [now, start] = sums.map(|sum| sum / count);
+        let (mut moment, mut map) = (DMat3::ZERO, DMat3::ZERO);
+        for (x, home) in places {
+            moment += dyad(x - now, x - now);
+            map += dyad(home - start, x - now);
+        }
+        if is_plane {
+            moment.z_axis.z = 1.0;
+            map.z_axis.z = 1.0;
+        }
+        (moment.determinant() > 0.0).then(|| Self { map: map * moment.inverse(), now, start })
+    }
+
+    fn back(&self, x: DVec3) -> DVec3 {
+        self.start + self.map * (x - self.now)
+    }
 }
 
 impl PassingWalls {
@@ -36,24 +75,32 @@ impl PassingWalls {
                 let shape = &sim.scene().bodies[wall.id.0].shape;
                 let Ok(region) = shape.region(sim.dimension(), sim.folder(), "shape") else { continue };
                 if !touching.has(&body.name, &wall.name) {
-                    pairs.push(BodyAndWall { body: body.id, wall: wall.id, region, spacing: body.spacing });
+                    let spacings = [body.spacing, wall.spacing];
+                    let is_plane = sim.dimension() == Dimension::Two;
+                    pairs.push(BodyAndWall { body: body.id, wall: wall.id, region, spacings, is_plane });
                 }
             }
         }
         Self { told: vec![false; pairs.len()], pairs }
     }
 
-    /// Checks all pairs; rotation of walls is ignored.
+    /// Checks all pairs. Where parts of a wall move against each other no map fits, so that a particle of the
+    /// wall has to be near.
     pub fn look(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         for (pair, told) in self.pairs.iter().zip(&mut self.told).filter(|(_, told)| !**told) {
             let (view, rows) = step.world.body_view(pair.wall);
             let (x, reference) = (view.read::<Position>()?, view.read::<ReferencePosition>()?);
-            let shift = rows.clone().next().map_or(DVec3::ZERO, |row| x[row].0 - reference[row].0);
+            let gone = view.read::<Removed>()?;
+            let wall = rows.filter(|row| gone[*row] == Removed::NO).map(|row| (x[row].0, reference[row].0));
+            let Some(motion) = WallMotion::of(wall.clone(), pair.is_plane) else { continue };
             let (view, rows) = step.world.body_view(pair.body);
             let (position, removed) = (view.read::<Position>()?, view.read::<Removed>()?);
+            let [depth, nearest] = [DEPTH * pair.spacings[0], NEAREST * pair.spacings[1]];
             let is_inside = |row: &usize| {
+                let place = position[*row].0;
                 removed[*row] == Removed::NO
-                    && pair.region.distance(position[*row].0 - shift) < -DEPTH * pair.spacing
+                    && pair.region.distance(motion.back(place)) < -depth
+                    && wall.clone().any(|(x, _)| x.distance(place) < nearest)
             };
             let Some(row) = rows.clone().find(is_inside) else { continue };
             *told = true;
