@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::drift::Drift;
+use super::common_motion::CommonMotion;
 use crate::world::BodyId;
 
 /// Kind of the energy in an account.
@@ -65,7 +65,7 @@ pub struct Ledger {
     /// Number of the system that runs.
     system: u32,
     /// Uniform motion of the scene; none if it is at rest.
-    drift: Option<Drift>,
+    drift: Option<CommonMotion>,
 }
 
 impl Ledger {
@@ -151,7 +151,7 @@ impl Ledger {
 
     /// Opens the energy balance: the currently stored energy is that at the start, and nothing is supplied or
     /// dissipated yet. The scene as a whole moves by `drift`.
-    pub(crate) fn open(&mut self, drift: Option<Drift>) {
+    pub(crate) fn open(&mut self, drift: Option<CommonMotion>) {
         self.drift = drift;
         for account in self.accounts.iter_mut().filter(|account| account.kind != AccountKind::Stored) {
             account.per_body.fill(0.0);
@@ -166,14 +166,14 @@ impl Ledger {
         if self.total_named(REMOVED_ENERGY) != 0.0 {
             self.drift = None;
         }
-        let resolution = self.drift.as_ref().map_or(0.0, Drift::resolution);
+        let resolution = self.drift.as_ref().map_or(0.0, CommonMotion::resolution);
         let turnover = self.accounts.iter().map(|account| self.relative(account).abs());
         self.largest = turnover.fold(self.largest, f64::max).max(self.other_work().abs()).max(resolution);
         self.set_resolution(resolution);
     }
 
     /// The uniform motion of the scene, if there is one.
-    pub(crate) fn drift(&self) -> Option<&Drift> {
+    pub(crate) fn drift(&self) -> Option<&CommonMotion> {
         self.drift.as_ref()
     }
 
@@ -183,12 +183,12 @@ impl Ledger {
     }
 
     /// The uniform motion, whose energies the caller states anew in every step.
-    pub(crate) fn drift_mut(&mut self) -> Option<&mut Drift> {
+    pub(crate) fn drift_mut(&mut self) -> Option<&mut CommonMotion> {
         self.drift.as_mut()
     }
 
-    /// Energy of an account without what the uniform motion of the scene adds, J. Where there is one, zero for
-    /// the work of forces other than gravity, which has no other frame than all together.
+    /// Energy of an account without what the uniform motion of the scene adds, J. Where there is one, zero
+    /// for the works of forces other than gravity, of which only the sum is known.
     fn relative(&self, account: &Account) -> f64 {
         let Some(drift) = &self.drift else { return account.total() };
         match (account.name.as_str(), account.kind) {
@@ -210,7 +210,7 @@ impl Ledger {
 
     /// Kinetic energy of all bodies without that of the uniform motion of the scene, J.
     pub fn motion(&self) -> f64 {
-        self.total_named(KINETIC) - self.drift.as_ref().map_or(0.0, Drift::total)
+        self.total_named(KINETIC) - self.drift.as_ref().map_or(0.0, CommonMotion::total)
     }
 
     /// What the uniform motion of the scene adds to an account of a body, J, if that is known.

@@ -1,6 +1,6 @@
 //! The step: stages, systems with declared access, their order, and the interface of a running system.
 
-mod drift;
+mod common_motion;
 mod each;
 mod ledger;
 mod limits;
@@ -12,7 +12,7 @@ mod step_part;
 mod system;
 mod trigger;
 
-pub(crate) use drift::Drift;
+pub(crate) use common_motion::CommonMotion;
 pub use each::{Adds, EachRow};
 pub use ledger::{Account, AccountId, AccountKind, EnergyAccount, INTO_HEAT, Ledger, REMOVED_ENERGY};
 pub use limits::{Limit, TimeStepLimits};

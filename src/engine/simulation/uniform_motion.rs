@@ -5,11 +5,11 @@ use glam::DVec3;
 use crate::parallel::{BlockSum, sum_over_blocks};
 use crate::rigid::{RigidBodies, RigidBody};
 use crate::scene::Scene;
-use crate::schedule::{Drift, Ledger, Resources};
+use crate::schedule::{CommonMotion, Ledger, Resources};
 use crate::world::{Body, BodyId, Mass, MissingColumn, Mobility, Removed, Velocity, World};
 
-/// Energy of the uniform motion over all kinetic energy below which the scene is at rest, and mean velocity of
-/// held particles over their mean speed.
+/// Energy of the uniform motion over all kinetic energy below which the scene is at rest, and mean velocity
+/// of held particles over their mean speed.
 const AT_REST: f64 = 1e-6;
 
 /// What the uniform motion of a scene depends on.
@@ -36,7 +36,7 @@ impl BlockSum for Momentum {
 
 /// What free and held particles have along each axis.
 #[derive(Clone, Copy, Debug, Default)]
-struct Motion {
+struct MotionAlongAxes {
     /// Mass, kg, and momentum, kg m/s, of what is free.
     mass: DVec3,
     momentum: DVec3,
@@ -46,7 +46,7 @@ struct Motion {
     speed: DVec3,
 }
 
-impl Motion {
+impl MotionAlongAxes {
     fn of(mass: f64, velocity: DVec3, mobility: DVec3) -> Self {
         let held = DVec3::select(mobility.cmpeq(DVec3::ZERO), DVec3::ONE, DVec3::ZERO);
         let mass = mass * (DVec3::ONE - held);
@@ -70,7 +70,7 @@ impl Motion {
     }
 }
 
-impl BlockSum for Motion {
+impl BlockSum for MotionAlongAxes {
     fn add(&mut self, next: &Self) {
         self.mass += next.mass;
         self.momentum += next.momentum;
@@ -95,7 +95,7 @@ impl UniformMotion {
         world: &World,
         resources: &Resources,
         ledger: &Ledger,
-    ) -> Result<Option<Drift>, MissingColumn> {
+    ) -> Result<Option<CommonMotion>, MissingColumn> {
         if self.is_held {
             return Ok(None);
         }
@@ -103,12 +103,12 @@ impl UniformMotion {
         let of: Result<Vec<_>, _> =
             bodies.map(|(k, body)| motion(world, resources, BodyId(k), body)).collect();
         let of = of?;
-        let mut all = Motion::default();
+        let mut all = MotionAlongAxes::default();
         of.iter().for_each(|motion| all.add(motion));
         let velocity = DVec3::from_array([0, 1, 2].map(|axis| all.frame(axis, &of)));
         let own = 0.5 * all.mass.max_element() * velocity.length_squared();
         let moves = own > AT_REST * (ledger.total_named("kinetic") + own);
-        moves.then(|| Ok(Drift::new(velocity, added(velocity, world, resources)?))).transpose()
+        moves.then(|| Ok(CommonMotion::new(velocity, added(velocity, world, resources)?))).transpose()
     }
 
     /// States the energies of the uniform motion after a step of length `dt`, s.
@@ -175,14 +175,24 @@ fn momentum(
     }))
 }
 
-/// Motion of a body along each axis.
-fn motion(world: &World, resources: &Resources, id: BodyId, body: &Body) -> Result<Motion, MissingColumn> {
+/// MotionAlongAxes of a body along each axis.
+fn motion(
+    world: &World,
+    resources: &Resources,
+    id: BodyId,
+    body: &Body,
+) -> Result<MotionAlongAxes, MissingColumn> {
     let count = body.rows.len() as f64;
     let of_rigid = |body: &RigidBody| {
         let free = |axis| if body.is_driven_along(axis) { 0.0 } else { 1.0 };
         let mass = if body.mass.is_finite() { body.mass } else { 0.0 };
-        let of = Motion::of(mass, body.state.velocity, DVec3::new(free(0), free(1), free(2)));
-        Motion { count: count * of.count, velocity: count * of.velocity, speed: count * of.speed, ..of }
+        let of = MotionAlongAxes::of(mass, body.state.velocity, DVec3::new(free(0), free(1), free(2)));
+        MotionAlongAxes {
+            count: count * of.count,
+            velocity: count * of.velocity,
+            speed: count * of.speed,
+            ..of
+        }
     };
     if let Some(motion) = rigid(resources, id, of_rigid) {
         return Ok(motion);
@@ -192,9 +202,9 @@ fn motion(world: &World, resources: &Resources, id: BodyId, body: &Body) -> Resu
     let mobility = view.read::<Mobility>()?;
     let rows = (&mass[rows.clone()], &velocity[rows.clone()], &mobility[rows]);
     Ok(sum_over_blocks(rows, &|_, rows: (&[Mass], &[Velocity], &[Mobility])| {
-        let mut sum = Motion::default();
+        let mut sum = MotionAlongAxes::default();
         for ((mass, velocity), mobility) in rows.0.iter().zip(rows.1).zip(rows.2) {
-            sum.add(&Motion::of(mass.0, velocity.0, mobility.0));
+            sum.add(&MotionAlongAxes::of(mass.0, velocity.0, mobility.0));
         }
         sum
     }))

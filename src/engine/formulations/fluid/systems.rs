@@ -5,7 +5,9 @@ use crate::formulations::fluid::cloud::{
     NEIGHBORS, Neighbors, REPELLED, Role, SPINS,
 };
 use crate::formulations::fluid::coupling::add_force_on_bodies;
-use crate::formulations::fluid::density::{ApplyState, Continuity, DensityShift, DisplacementAccount};
+use crate::formulations::fluid::density::{
+    ApplyState, Continuity, DensityShift, DisplacementAccount, open_gravity,
+};
 use crate::formulations::fluid::moments::{SurfaceMoments, SurfaceStretching};
 use crate::formulations::fluid::passes::{Compression, FLUID_FORCE, FlowForce, reads_flow};
 use crate::formulations::fluid::rotation::Spin;
@@ -193,7 +195,7 @@ fn add_state(sim: &mut SimBuilder<'_>, fluid: PhaseId, account: Option<String>) 
             .touches_all(shift)
             .writes::<Density>(),
     );
-    let pressure = ApplyState { mach: Vec::new(), sums: Vec::new() };
+    let pressure = ApplyState { gravity: open_gravity(sim), mach: Vec::new(), sums: Vec::new() };
     sim.add_system(
         System::new(Stage::Constitutive, "fluid_pressure", pressure)
             .on_phases([fluid])

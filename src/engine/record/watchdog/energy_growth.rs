@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::remedies::Remedies;
 use crate::materials::Law;
 use crate::plugin::{BodyPlan, SimBuilder};
-use crate::schedule::{AccountKind, Drift, Ledger, Step, StepError};
+use crate::schedule::{AccountKind, CommonMotion, Ledger, Step, StepError};
 use crate::world::{BodyId, World};
 
 /// Stored energy over what was there at the start or supplied since, beyond which the run is stopped.
@@ -33,7 +33,7 @@ impl EnergyGrowth {
     pub fn look(&mut self, step: &Step<'_>, resolution: f64, remedies: &Remedies) -> Result<(), StepError> {
         let (ledger, clock) = (&*step.ledger, step.clock);
         // Energy of a uniform motion of the whole scene feeds nothing.
-        let drift = ledger.drift().map_or(0.0, Drift::total);
+        let drift = ledger.drift().map_or(0.0, CommonMotion::total);
         let stored = ledger.stored() - drift;
         self.available = self.available.max(ledger.stored_at_start() + ledger.supplied() - drift);
         let resolution = resolution.max(ledger.resolution());

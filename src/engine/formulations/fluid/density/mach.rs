@@ -3,10 +3,13 @@
 //! A tank that moves as a whole with its fluid compresses nothing. Speeds count relative to one of several
 //! frames: at rest, that of one of the boundary bodies, or, without boundaries, that of the mean velocity of
 //! the fluids. The frame is the one in which the largest speed of fluids and boundaries is smallest.
+//!
+//! What has fallen past all boundaries meets nothing that could compress it, and does not count.
 
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
+use super::floor::Floor;
 use crate::formulations::fluid::cloud::{FluidState, Group, Role};
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::notation::quantity;
@@ -40,10 +43,10 @@ impl BlockSum for LargestSpeed {
     }
 }
 
-/// Largest speed of a body in a frame, m/s.
-fn fastest(group: &Group, records: &[FlowParticle], frame: DVec3) -> f64 {
+/// Largest speed in a frame, m/s, of the particles of a body that have not fallen.
+fn fastest(group: &Group, records: &[FlowParticle], frame: DVec3, floor: Floor) -> f64 {
     let square = sum_over_own_blocks(&records[group.cloud.clone()], &|_, records: &[FlowParticle]| {
-        let here = records.iter().filter(|record| record.volume() > 0.0);
+        let here = records.iter().filter(|record| record.volume() > 0.0 && !floor.is_above(record));
         LargestSpeed(here.map(|record| record.velocity().distance_squared(frame)).fold(0.0, f64::max))
     });
     square.0.sqrt()
@@ -79,10 +82,11 @@ fn mean_velocity(groups: &[Group], records: &[FlowParticle]) -> DVec3 {
 }
 
 /// Largest speed of a fluid against the frame of its flow, m/s; `at_first` is the one against `base`, the
-/// [`wall_frame`]. At the speeds of fluids that are no warning nothing is looked for.
+/// [`wall_frame`], under this gravity, m/s2. At the speeds of fluids that are no warning nothing is looked
+/// for.
 pub fn relative_speed(
     at_first: f64,
-    base: DVec3,
+    [base, gravity]: [DVec3; 2],
     group: &Group,
     groups: &[Group],
     records: &[FlowParticle],
@@ -93,14 +97,16 @@ pub fn relative_speed(
     let bounds = || groups.iter().filter(|group| group.fluid().is_none());
     let of_bounds = bounds().map(|group| mean_velocity(std::slice::from_ref(group), records));
     let of_all = bounds().next().is_none().then(|| mean_velocity(groups, records));
-    let in_frame = |frame| groups.iter().map(|group| fastest(group, records, frame)).fold(0.0, f64::max);
+    let floor = Floor::of(gravity, groups, records);
+    let in_frame =
+        |frame| groups.iter().map(|group| fastest(group, records, frame, floor)).fold(0.0, f64::max);
     let mut least = in_frame(base);
-    let mut speed = at_first;
+    let mut speed = fastest(group, records, base, floor).min(at_first);
     // A frame that is slow beside the flow is as good as the first one.
     for frame in of_bounds.chain(of_all).filter(|frame| frame.distance(base) > (1.0 - SLOWER) * at_first) {
         let largest = in_frame(frame);
         if largest < SLOWER * least {
-            (least, speed) = (largest, fastest(group, records, frame).min(at_first));
+            (least, speed) = (largest, fastest(group, records, frame, floor).min(at_first));
         }
     }
     speed

@@ -2,10 +2,13 @@
 
 mod continuity;
 
+mod floor;
+
 mod mach;
 
 mod state;
 
 pub use continuity::{Continuity, DensityShift, DisplacementAccount, SHIFTING_ENERGY};
+pub use floor::{Floor, open_gravity};
 pub use mach::{relative_speed, wall_frame};
 pub use state::ApplyState;

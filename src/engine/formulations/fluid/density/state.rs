@@ -25,6 +25,8 @@ const VISCOUS: f64 = 0.32;
 
 /// Sets pressure and volume from the density.
 pub struct ApplyState {
+    /// Acceleration of gravity along the axes that are not periodic, m/s2.
+    pub gravity: DVec3,
     /// Largest Mach numbers of the bodies that the user has been warned of.
     pub mach: Vec<Mach>,
     pub sums: Vec<StateSum>,
@@ -81,7 +83,8 @@ impl Run for ApplyState {
                 run_hot(Apply { state, frame, rows: rows.0, packed: rows.1 })
             });
             step.ledger.set(account, group.body, sum.energy);
-            let speed = relative_speed(sum.speed_squared.sqrt(), frame, group, groups, records);
+            let speed =
+                relative_speed(sum.speed_squared.sqrt(), [frame, self.gravity], group, groups, records);
             let sound = state.sound_speed;
             let name = &step.world.body(group.body).name;
             mach.look(speed, state, name, step)?;

@@ -126,7 +126,7 @@ pub fn flow_is_slow(cloud: &mut FlowCloud, world: &crate::world::World) -> Resul
         let records = &cloud.records[group.cloud.clone()];
         let speeds = records.iter().map(|record| record.velocity().distance(frame));
         let fastest = speeds.fold(0.0, f64::max);
-        let fastest = relative_speed(fastest, frame, group, &cloud.groups, &cloud.records);
+        let fastest = relative_speed(fastest, [frame, DVec3::ZERO], group, &cloud.groups, &cloud.records);
         if fastest >= state.sound_speed {
             let body = world.body(group.body);
             let message = format!(

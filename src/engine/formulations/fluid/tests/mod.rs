@@ -40,6 +40,8 @@ mod gaps;
 
 mod moving;
 
+mod falling;
+
 use crate::assembly::build;
 use crate::plugin::Registry;
 use crate::scene::{Source, parse};

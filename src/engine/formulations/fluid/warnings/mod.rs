@@ -1,5 +1,7 @@
 //! Warnings of flows during a run.
 
+mod fallen;
+
 mod half_space;
 
 mod held_down;

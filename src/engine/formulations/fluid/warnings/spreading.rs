@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::closed::named;
 use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud};
+use crate::formulations::fluid::density::open_gravity;
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::notation::quantity;
 use crate::parallel::{BlockSum, sum_over_blocks};
@@ -52,9 +53,7 @@ struct Middle {
 impl Spreading {
     /// The watch of a scene.
     pub fn new(sim: &SimBuilder<'_>) -> Self {
-        let is_open = sim.periodic().lengths().cmpeq(DVec3::ZERO);
-        let gravity = DVec3::select(is_open, sim.gravity(), DVec3::ZERO);
-        Self { gravity, end: sim.scene().time.end, seen: Seen::default() }
+        Self { gravity: open_gravity(sim), end: sim.scene().time.end, seen: Seen::default() }
     }
 
     /// Notes the energies in the middle of a run, and compares those at its end with them.

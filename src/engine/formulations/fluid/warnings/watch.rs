@@ -4,6 +4,7 @@
 use super::closed::ClosedWatch;
 use super::compression::CompressionWatch;
 use super::driven;
+use super::fallen::FallenWatch;
 use super::filling::FillingWatch;
 use super::fit;
 use super::friction::FrictionOfParticle;
@@ -32,6 +33,7 @@ const INTERVAL: u64 = 50;
 struct FlowWatch {
     intrusion: Intrusion,
     passing: PassingWalls,
+    fallen: FallenWatch,
     /// Whether the user has been told of a half-space that a fluid falls into.
     is_through: bool,
     /// The same of a body beside a gap without pressure.
@@ -72,6 +74,7 @@ pub fn add(phases: Vec<PhaseId>, groups: &[Group], diffusion: Option<String>, si
     let watch = FlowWatch {
         intrusion: Intrusion::new(sim, spacing),
         passing: PassingWalls::new(sim),
+        fallen: FallenWatch::new(sim),
         is_through: false,
         lies: false,
         is_stabilized: false,
@@ -130,6 +133,7 @@ impl Run for FlowWatch {
             self.held_down.look(&cloud, step)?;
             no_gap_pressure::look(&mut self.lies, &cloud, self.spacing, step)?;
             self.lost_volume.look(&cloud, step)?;
+            self.fallen.look(&cloud, step);
             self.compression.look(&cloud, &mut self.friction, step);
             self.filling.look(&cloud, &mut self.scratch, step);
             stretched::look(&mut self.stretched, &cloud, &mut self.scratch, step);
@@ -153,19 +157,19 @@ impl Run for FlowWatch {
             told,
             bodies,
             (&self.compression, &self.tension, &self.spreading.seen),
-            (&self.filling, &self.lost_volume, &self.stretched),
+            (&self.filling, &self.lost_volume, &self.stretched, self.fallen.told),
             self.frames,
         ))
         .unwrap_or_default()
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        let Ok((told, bodies, (compression, tension, spreading), (filling, lost, stretched), frames)) =
+        let Ok((told, bodies, (compression, tension, spreading), (filling, lost, stretched, fallen), frames)) =
             postcard::from_bytes(state)
         else {
             return false;
         };
-        (self.lost_volume, self.stretched) = (lost, stretched);
+        (self.lost_volume, self.stretched, self.fallen.told) = (lost, stretched, fallen);
         let at_end;
         (self.is_through, self.lies, at_end, self.closed, self.held_down.seen) = bodies;
         (self.is_stabilized, self.is_driven, self.has_torques) = at_end;

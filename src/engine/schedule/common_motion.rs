@@ -1,10 +1,10 @@
 //! What a uniform motion of the whole scene adds to its energies.
 //!
-//! A scene that moves as a whole is the same scene, but its energies are not the same: kinetic energy, and the
-//! work of every force that does not act between its parts, depend on the velocity of who measures them.
-//! Criteria that compare energies take those in the frame of the [`Drift`], in which the boundaries, or else
-//! the centre of mass, were at rest at the start. In that frame the balance has the same error, because
-//! forces and the change of momentum agree: the work of forces other than gravity follows from it.
+//! A scene that moves as a whole is the same scene, but its energies are not the same: kinetic energy, and
+//! the work of every force that does not act between its parts, depend on the velocity of who measures them.
+//! Criteria that compare energies take those in the frame of the [`CommonMotion`], in which the boundaries,
+//! or else the centre of mass, were at rest at the start. In that frame the balance has the same error,
+//! because forces and the change of momentum agree: the work of forces other than gravity follows from it.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -14,7 +14,7 @@ const DIGITS: f64 = 1e-9;
 
 /// The uniform motion of a scene, and what it adds to the energies.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Drift {
+pub struct CommonMotion {
     /// Velocity of the frame, m/s.
     pub velocity: DVec3,
     /// What it adds to the kinetic energy of each body, J.
@@ -25,7 +25,7 @@ pub struct Drift {
     pub gravity: f64,
 }
 
-impl Drift {
+impl CommonMotion {
     /// A motion with that velocity, m/s, which adds so much to the kinetic energy of each body, J.
     pub fn new(velocity: DVec3, kinetic: Vec<f64>) -> Self {
         let at_start = kinetic.iter().sum();

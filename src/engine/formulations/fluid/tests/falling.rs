@@ -1,0 +1,35 @@
+//! Water that has left its vessel and falls on.
+
+use super::{column, simulation};
+use crate::world::Position;
+
+/// A drop of 16 particles beside a shelf, which it falls past for 1.2 s, to 11.8 m/s.
+fn drop(domain: &str) -> String {
+    format!(
+        r#"(dimension: Two, gravity: (0.0, -9.81), {domain}
+            materials: {{"water": Fluid(density: 1000.0, sound_speed: 10.0)}},
+            bodies: [
+                (name: "water", material: "water", shape: Box(min: (0.8, 0), max: (1, 0.2)), spacing: 0.05, formulation: Fluid()),
+                (name: "shelf", material: "wall", shape: Box(min: (0, 0), max: (0.4, 0.2)), spacing: 0.05, formulation: Wall()),
+            ],
+            time: (end: 1.2))"#
+    )
+}
+
+#[test]
+fn a_drop_that_falls_past_all_walls_is_named_and_falls_on() {
+    let mut sim = simulation(&drop(""));
+    sim.run(|_| true).expect("a run");
+    let way = 0.5 * 9.81 * 1.2 * 1.2;
+    let heights = column::<Position>(&sim, 0).into_iter().map(|position| position.0.y);
+    assert!((heights.sum::<f64>() / 16.0 - 0.1 + way).abs() < 1e-3 * way);
+    let of = |part: &str| sim.warnings().iter().filter(|text| text.contains(part)).count();
+    assert_eq!([of("past all walls and bodies: 16 of its particles"), of("Mach number")], [1, 0]);
+}
+
+#[test]
+fn what_a_domain_takes_out_is_not_missing() {
+    let mut sim = simulation(&drop("domain: (min: (-1, -1), max: (2, 1), outside: Remove),"));
+    sim.run(|_| true).expect("a run");
+    assert!(!sim.warnings().iter().any(|text| text.contains("past all walls")), "{:?}", sim.warnings());
+}
