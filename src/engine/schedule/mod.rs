@@ -2,6 +2,7 @@
 
 mod common_motion;
 mod each;
+mod intruders;
 mod ledger;
 mod limits;
 mod order;
@@ -14,6 +15,7 @@ mod trigger;
 
 pub(crate) use common_motion::CommonMotion;
 pub use each::{Adds, EachRow};
+pub use intruders::Intruders;
 pub use ledger::{Account, AccountId, AccountKind, EnergyAccount, INTO_HEAT, Ledger, REMOVED_ENERGY};
 pub use limits::{Limit, TimeStepLimits};
 pub use order::{Schedule, ScheduleError};

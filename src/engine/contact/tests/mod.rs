@@ -10,6 +10,7 @@ mod laws;
 mod loaded;
 mod long;
 mod moving_frame;
+mod noticing;
 mod particles;
 mod rigid;
 mod rolling;

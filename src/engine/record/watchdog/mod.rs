@@ -3,6 +3,8 @@
 mod domain;
 mod energy_growth;
 mod hourglass;
+mod intrusion;
+mod particles_in;
 mod passing;
 mod remedies;
 mod soft_under_pressure;

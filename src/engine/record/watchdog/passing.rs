@@ -2,12 +2,13 @@
 
 use glam::DVec3;
 
+use super::particles_in::{bounds, particles_in};
 use crate::neighbors::{Cloud, NeighborList, Periodic, SupportRadii};
 use crate::notation::{place, quantity};
 use crate::plugin::{BodyKind, BodyPlan, SimBuilder};
 use crate::schedule::{Step, StepError};
 use crate::shapes::Aabb;
-use crate::world::{BodyId, Position, Removed};
+use crate::world::BodyId;
 
 /// Distance of particles of two bodies, over their mean spacing, below which the bodies overlap: those that
 /// touch are one spacing apart.
@@ -66,32 +67,11 @@ fn overlap(step: &Step<'_>, bodies: [BodyId; 2], distance: f64) -> Result<Option
     if !common.min.cmple(common.max).all() {
         return Ok(None);
     }
-    let mut positions = Vec::new();
-    let mut firsts = 0;
-    for (k, &body) in bodies.iter().enumerate() {
-        let (view, rows) = step.world.body_view(body);
-        let (position, removed) = (view.read::<Position>()?, view.read::<Removed>()?);
-        let is_there = |row: &usize| {
-            let x = position[*row].0;
-            removed[*row] == Removed::NO && x.cmpge(common.min).all() && x.cmple(common.max).all()
-        };
-        positions.extend(rows.filter(is_there).map(|row| position[row].0));
-        if k == 0 {
-            firsts = positions.len();
-        }
-    }
+    let (_, mut positions) = particles_in(step, bodies[0], Some(&common))?;
+    let firsts = positions.len();
+    positions.extend(particles_in(step, bodies[1], Some(&common))?.1);
     let cloud = Cloud { positions: &positions, support: SupportRadii::Uniform(distance) };
     let Ok(list) = NeighborList::reference(cloud, &Periodic::NONE) else { return Ok(None) };
     let meets = |i: &usize| list.row(*i).iter().any(|&j| j as usize >= firsts);
     Ok((0..firsts).find(meets).map(|i| positions[i]))
-}
-
-/// The box around the particles of a body.
-fn bounds(step: &Step<'_>, body: BodyId) -> Result<Aabb, StepError> {
-    let (view, rows) = step.world.body_view(body);
-    let (position, removed) = (view.read::<Position>()?, view.read::<Removed>()?);
-    let there = rows.filter(|row| removed[*row] == Removed::NO).map(|row| position[row].0);
-    let (min, max) =
-        there.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(min, max), x| (min.min(x), max.max(x)));
-    Ok(Aabb { min, max })
 }

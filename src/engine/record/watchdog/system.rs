@@ -3,6 +3,7 @@
 use super::domain::DomainCheck;
 use super::energy_growth::{EnergyGrowth, resolution};
 use super::hourglass::HourglassShare;
+use super::intrusion::Intrusion;
 use super::passing::PassingBodies;
 use super::remedies::Remedies;
 use super::soft_under_pressure::SoftUnderPressure;
@@ -26,6 +27,7 @@ struct Watchdog {
     hourglass: HourglassShare,
     wrong_sign: WrongSign,
     passing: PassingBodies,
+    intrusion: Intrusion,
     soft: SoftUnderPressure,
     remedies: Remedies,
     domain: Option<DomainCheck>,
@@ -44,6 +46,7 @@ pub fn add_system(sim: &mut SimBuilder<'_>) {
         hourglass: HourglassShare::new(sim),
         wrong_sign: WrongSign::new(sim),
         passing: PassingBodies::new(sim),
+        intrusion: Intrusion::new(sim),
         soft: SoftUnderPressure::new(sim),
         remedies: Remedies::new(sim),
         domain,
@@ -73,6 +76,7 @@ impl Run for Watchdog {
                 self.hourglass.warn(step);
             }
             self.passing.look(step)?;
+            self.intrusion.look(step)?;
             self.soft.look(step)?;
             self.wrong_sign.warn(step, &self.remedies, at_end);
         }
@@ -84,7 +88,7 @@ impl Run for Watchdog {
             self.energy,
             &self.hourglass,
             &self.wrong_sign,
-            &self.passing.told,
+            (&self.passing.told, &self.intrusion.told),
             &self.soft.told,
             self.frames,
         ))
@@ -92,11 +96,13 @@ impl Run for Watchdog {
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        let Ok((energy, hourglass, wrong_sign, passing, soft, frames)) = postcard::from_bytes(state) else {
+        let Ok((energy, hourglass, wrong_sign, (passing, intrusion), soft, frames)) =
+            postcard::from_bytes(state)
+        else {
             return false;
         };
         (self.energy, self.hourglass, self.wrong_sign) = (energy, hourglass, wrong_sign);
-        self.passing.told = passing;
+        (self.passing.told, self.intrusion.told) = (passing, intrusion);
         self.soft.told = soft;
         self.frames.resume(frames);
         true

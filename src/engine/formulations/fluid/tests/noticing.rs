@@ -165,7 +165,7 @@ fn a_particle_inside_of_a_wall_is_named_with_place_and_time() {
     // It starts 0.01 m above the floor and goes down with 0.4 m/s: it is 0.01 m below the surface at 0.05 s.
     let text = warning(&sim, "is inside of `tank`").expect("a warning");
     let milliseconds: f64 = text
-        .split("] and ")
+        .split(") and ")
         .nth(1)
         .and_then(|rest| rest.split_once(" ms").map(|(time, _)| time))
         .expect("a time")

@@ -8,11 +8,9 @@ use glam::{DMat3, DVec3};
 use crate::formulations::fluid::cloud::{FlowCloud, Group, part};
 use crate::formulations::fluid::walls::apart;
 use crate::linalg::dyad;
-use crate::notation::quantity;
 use crate::parallel::own_rows;
 use crate::plugin::SimBuilder;
-use crate::ranks;
-use crate::schedule::{Step, StepError};
+use crate::schedule::{Intruders, Step, StepError};
 use crate::shapes::Region;
 use crate::world::{BodyId, ParticleId, ReferencePosition};
 
@@ -39,14 +37,6 @@ struct IntrudedShape {
     spacing: f64,
     /// Whether it has lost particles.
     is_worn: bool,
-}
-
-/// The deepest particle of a fluid in a body.
-#[derive(Clone, Copy)]
-struct Deepest {
-    row: usize,
-    depth: f64,
-    count: u32,
 }
 
 impl Intrusion {
@@ -82,7 +72,7 @@ impl Intrusion {
     fn warn(
         &mut self,
         [fluid, other]: [&Group; 2],
-        deepest: &Deepest,
+        deepest: &Intruders,
         cloud: &FlowCloud,
         step: &mut Step<'_>,
     ) -> Result<(), StepError> {
@@ -93,37 +83,14 @@ impl Intrusion {
         }
         self.told.push((key.0, key.1, deepest.count));
         let id = step.world.phase(fluid.phase).read::<ParticleId>()?[fluid.rows.start + deepest.row].0;
-        let name = |group: &Group| &step.world.body(group.body).name;
+        let names = [fluid, other].map(|group| &step.world.body(group.body).name[..]);
         let x = cloud.records[fluid.cloud.start + deepest.row].position();
         step.warnings.push(format!(
-            "particle {id} of `{}` is inside of `{}`, {} below its surface, at {x} and {}{}: nothing may enter a body; more \
-             particles across it, a larger `sound_speed`, `density_diffusion()` or a smaller step may keep them out",
-            name(fluid),
-            name(other),
-            quantity(deepest.depth, "m"),
-            quantity(step.clock.time, "s"),
-            if deepest.count > 1 { format!(", and {} others", deepest.count - 1) } else { String::new() }
+            "{}: nothing may enter a body; more particles across it, a larger `sound_speed`, `density_diffusion()` or a \
+             smaller step may keep them out",
+            deepest.text(id, names, x, step.clock.time)
         ));
         Ok(())
-    }
-}
-
-impl Deepest {
-    /// The deepest of all ranks; the first of several.
-    fn of_ranks(found: Option<Self>) -> Option<Self> {
-        let mut words: Vec<[u64; 3]> = found
-            .iter()
-            .map(|found| [found.row as u64, found.depth.to_bits(), u64::from(found.count)])
-            .collect();
-        if !ranks::has_several() {
-            return found;
-        }
-        ranks::concatenate(&mut words);
-        words.sort_unstable_by_key(|[row, ..]| *row);
-        let count = words.iter().map(|[.., count]| *count as u32).sum();
-        let all = words.iter().map(|&[row, depth, _]| (row as usize, f64::from_bits(depth)));
-        let deepest = all.reduce(|first, next| if first.1 >= next.1 { first } else { next });
-        deepest.map(|(row, depth)| Self { row, depth, count })
     }
 }
 
@@ -134,9 +101,9 @@ fn deepest(
     body: &IntrudedShape,
     reference: &[ReferencePosition],
     min_depth: f64,
-) -> Option<Deepest> {
+) -> Option<Intruders> {
     let beside = BoundingBody { cloud, group: other, spacing: body.spacing, reference };
-    let mut found: Option<Deepest> = None;
+    let mut found = None;
     for i in own_rows(&fluid.cloud).filter(|i| cloud.records[*i].volume() > 0.0) {
         let row = i - fluid.cloud.start;
         let near = part(cloud.near_row(i), &other.cloud);
@@ -149,13 +116,9 @@ fn deepest(
         if depth < min_depth {
             continue;
         }
-        let count = found.as_ref().map_or(0, |found| found.count) + 1;
-        match &mut found {
-            Some(found) if found.depth >= depth => found.count = count,
-            _ => found = Some(Deepest { row, depth, count }),
-        }
+        Intruders::add(&mut found, row, depth);
     }
-    Deepest::of_ranks(found)
+    Intruders::of_ranks(found)
 }
 
 /// A body that bounds the flow, and where its particles are in the scene.

@@ -1,0 +1,213 @@
+//! Particles of a body inside of another one that it touches: contact that does not hold them apart.
+//!
+//! Contact acts at points of surfaces, a fraction of a spacing apart, which move with the particles behind
+//! them. An edge that is sharper, or a part that is thinner, than that spacing passes between them, or the
+//! surface follows it and particles do not.
+//!
+//! The distance from a rigid body is that from its exact surface. A place in a deformable body is mapped back
+//! to the reference configuration by the deformation gradient of the nearest particle, and compared with the
+//! shape there. As bodies may have been cut or torn, particles of the body also have to surround the place.
+
+use glam::DVec3;
+
+use super::particles_in::{bounds, holds, particles_in};
+use crate::neighbors::{Cloud, NeighborList, Periodic, SupportRadii};
+use crate::plugin::{BodyKind, BodyPlan, SimBuilder};
+use crate::rigid::{RigidBodies, RigidBody};
+use crate::schedule::{Intruders, Step, StepError};
+use crate::shapes::{Aabb, Region};
+use crate::world::{BodyId, DeformationGradient, ParticleId, Position, ReferencePosition, Removed};
+
+/// Depth below a surface at which a particle is inside, over the spacing of the deformable body. Particles
+/// begin as deep behind their own surface, so that surfaces then overlap by a whole spacing.
+const DEPTH: f64 = 0.5;
+/// Range of the particles that may surround a place, over their spacing, and distance of the nearest one
+/// beyond which the place is not among them; the middle of a cube is 0.87 away.
+const RANGE: f64 = 2.0;
+const NEAREST: f64 = 0.9;
+/// Mean direction of the particles around a place over their mean distance, up to which they surround it: at
+/// the outermost particles of a flat side it is about 0.5.
+const ENCLOSED: f64 = 0.3;
+
+/// Checks for particles inside other bodies.
+pub(super) struct Intrusion {
+    pairs: Vec<[BodyId; 2]>,
+    /// Shapes in the reference configuration of the deformable bodies among them.
+    solids: Vec<(BodyId, Box<dyn Region>)>,
+    spacings: Vec<f64>,
+    periodic: Periodic,
+    /// Pairs that the user has been warned of.
+    pub told: Vec<bool>,
+}
+
+impl Intrusion {
+    /// All pairs of solids, rigid bodies and walls that have a contact.
+    pub fn new(sim: &SimBuilder<'_>) -> Self {
+        let touching = sim.touching_pairs();
+        let bodies = || sim.bodies().iter().filter(|body| body.kind != BodyKind::Fluid);
+        let is_solid = |body: &&BodyPlan| body.kind == BodyKind::Solid;
+        let all = bodies().flat_map(|a| bodies().filter(|b| a.id.0 < b.id.0).map(move |b| (a, b)));
+        let all = all.filter(|(a, b)| touching.has(&a.name, &b.name));
+        // The distance from a rigid body is the exact one.
+        let solid_first = |(a, b)| if is_solid(&a) || !is_solid(&b) { [a, b] } else { [b, a] };
+        let pairs: Vec<[BodyId; 2]> = all.map(|pair| solid_first(pair).map(|body| body.id)).collect();
+        let shape = |body: &BodyPlan| {
+            let shape = &sim.scene().bodies[body.id.0].shape;
+            Some((body.id, shape.region(sim.dimension(), sim.folder(), "shape").ok()?))
+        };
+        let is_paired = |body: &&BodyPlan| pairs.iter().flatten().any(|id| *id == body.id);
+        let solids = bodies().filter(is_solid).filter(is_paired);
+        Self {
+            solids: solids.filter_map(shape).collect(),
+            spacings: sim.bodies().iter().map(|body| body.spacing).collect(),
+            periodic: sim.periodic(),
+            told: vec![false; pairs.len()],
+            pairs,
+        }
+    }
+
+    /// Checks all pairs that have not been warned of.
+    ///
+    /// # Errors
+    /// A column is missing.
+    pub fn look(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        for number in 0..self.pairs.len() {
+            let [a, b] = self.pairs[number];
+            for pair in [[a, b], [b, a]] {
+                if !self.told[number]
+                    && let Some(found) = self.inside(step, pair)?
+                {
+                    self.told[number] = true;
+                    self.warn(step, &found, pair)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn warn(&self, step: &mut Step<'_>, found: &Intruders, pair: [BodyId; 2]) -> Result<(), StepError> {
+        let (view, rows) = step.world.body_view(pair[0]);
+        let row = rows.start + found.row;
+        let (id, x) = (view.read::<ParticleId>()?[row].0, view.read::<Position>()?[row].0);
+        let names = pair.map(|body| &step.world.body(body).name[..]);
+        let is_solid = |body: &BodyId| self.solids.iter().any(|(solid, _)| solid == body);
+        let what_to_do = match pair.each_ref().map(is_solid) {
+            [false, false] => "take a stiffer law or shorter steps".to_owned(),
+            [true, true] => finer("both"),
+            [true, false] => finer(&format!("`{}`", names[0])),
+            [false, true] => finer(&format!("`{}`", names[1])),
+        };
+        step.warnings.push(format!(
+            "{}: contact does not hold them apart, and its forces are wrong; {what_to_do}",
+            found.text(id, names, x, step.clock.time)
+        ));
+        Ok(())
+    }
+
+    /// The particles of the first body inside of the second.
+    fn inside(&self, step: &Step<'_>, [body, other]: [BodyId; 2]) -> Result<Option<Intruders>, StepError> {
+        if let Some((_, region)) = self.solids.iter().find(|(solid, _)| *solid == other) {
+            let spacing = self.spacings[other.0];
+            return InSolid { step, solid: other, region: &**region, spacing, periodic: &self.periodic }
+                .particles_of(body);
+        }
+        // A wall has particles alone, which a deformable body may have inside.
+        let Some(bodies) = step.resources.try_get::<RigidBodies>() else { return Ok(None) };
+        let Some(tool) = bodies.iter().find(|tool| tool.id == other && !tool.state.gone) else {
+            return Ok(None);
+        };
+        in_rigid(step, body, tool, DEPTH * self.spacings[body.0], &self.periodic)
+    }
+}
+
+/// What to do where contact of a deformable body fails.
+fn finer(solid: &str) -> String {
+    format!(
+        "round edges and tips to some spacings and make thin parts thicker than one, or take smaller particles in {solid}, or a stiffer law"
+    )
+}
+
+/// The particles of a body deeper than `depth`, m, below the surface of a rigid one.
+fn in_rigid(
+    step: &Step<'_>,
+    body: BodyId,
+    tool: &RigidBody,
+    depth: f64,
+    periodic: &Periodic,
+) -> Result<Option<Intruders>, StepError> {
+    let (view, rows) = step.world.body_view(body);
+    let (position, removed) = (view.read::<Position>()?, view.read::<Removed>()?);
+    let bounds = tool.surface.bounds();
+    let mut found = None;
+    for (row, (x, removed)) in position[rows.clone()].iter().zip(&removed[rows]).enumerate() {
+        let image = tool.state.center + periodic.minimal_image(x.0 - tool.state.center);
+        let x = tool.reference(image);
+        if *removed != Removed::NO || !holds(&bounds, x) {
+            continue;
+        }
+        let below = -tool.surface.closest(x).signed_distance;
+        if below > depth {
+            Intruders::add(&mut found, row, below);
+        }
+    }
+    Ok(found)
+}
+
+/// The inside of a deformable body.
+struct InSolid<'a> {
+    step: &'a Step<'a>,
+    solid: BodyId,
+    region: &'a dyn Region,
+    spacing: f64,
+    periodic: &'a Periodic,
+}
+
+impl InSolid<'_> {
+    /// The particles of another body in it.
+    fn particles_of(&self, body: BodyId) -> Result<Option<Intruders>, StepError> {
+        let Self { step, solid, region, spacing, periodic } = *self;
+        let open = |bounds: Aabb| (!periodic.any()).then_some(bounds);
+        // What is inside lies between its particles.
+        let around = open(bounds(step, solid)?);
+        let (rows, mut positions) = particles_in(step, body, around.as_ref())?;
+        if rows.is_empty() {
+            return Ok(None);
+        }
+        let range = RANGE * spacing;
+        let near = open(Aabb::around(positions.iter().copied()).grown(range));
+        let (own_rows, own) = particles_in(step, solid, near.as_ref())?;
+        positions.extend(own);
+        let cloud = Cloud { positions: &positions, support: SupportRadii::Uniform(range) };
+        let Ok(list) = NeighborList::reference(cloud, periodic) else { return Ok(None) };
+        let view = step.world.body_view(solid).0;
+        let (reference, gradient) = (view.read::<ReferencePosition>()?, view.read::<DeformationGradient>()?);
+        let mut found = None;
+        let first = step.world.body_view(body).1.start;
+        for (i, row) in rows.iter().enumerate() {
+            let others = list.row(i).iter().map(|&j| j as usize).filter(|j| *j >= rows.len());
+            let offset = |j: usize| periodic.minimal_image(positions[j] - positions[i]);
+            let distances = others.clone().map(|j| (offset(j).length(), j));
+            let Some((_, nearest)) = distances.min_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
+            let own_row = own_rows[nearest - rows.len()];
+            let back = gradient[own_row].0.inverse();
+            let away = back * offset(nearest);
+            let below = -region.distance(reference[own_row].0 - away);
+            let is_among = away.length() < NEAREST * spacing && below > DEPTH * spacing;
+            if is_among && is_enclosed(others.map(|j| back * offset(j)), range) {
+                Intruders::add(&mut found, row - first, below);
+            }
+        }
+        Ok(found)
+    }
+}
+
+/// Whether particles at these places, m, from another one surround it.
+fn is_enclosed(places: impl Iterator<Item = DVec3>, range: f64) -> bool {
+    let (mut sum, mut total) = (DVec3::ZERO, 0.0);
+    for x in places {
+        let weight = (1.0 - x.length() / range).max(0.0);
+        sum += weight * x;
+        total += weight * x.length();
+    }
+    sum.length() < ENCLOSED * total
+}

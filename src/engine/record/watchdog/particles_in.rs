@@ -1,0 +1,32 @@
+//! The particles of a body that are in a box.
+
+use glam::DVec3;
+
+use crate::schedule::{Step, StepError};
+use crate::shapes::Aabb;
+use crate::world::{BodyId, Position, Removed};
+
+/// Rows and places, m, of the particles of a body, those in a box alone.
+pub(super) fn particles_in(
+    step: &Step<'_>,
+    body: BodyId,
+    within: Option<&Aabb>,
+) -> Result<(Vec<usize>, Vec<DVec3>), StepError> {
+    let (view, rows) = step.world.body_view(body);
+    let (position, removed) = (view.read::<Position>()?, view.read::<Removed>()?);
+    let is_in = |x: DVec3| within.is_none_or(|within| holds(within, x));
+    let is_there = |row: &usize| removed[*row] == Removed::NO && is_in(position[*row].0);
+    Ok(rows.filter(is_there).map(|row| (row, position[row].0)).unzip())
+}
+
+/// Whether a point is in a box.
+pub(super) fn holds(bounds: &Aabb, x: DVec3) -> bool {
+    x.cmpge(bounds.min).all() && x.cmple(bounds.max).all()
+}
+
+/// The box around the particles of a body.
+pub(super) fn bounds(step: &Step<'_>, body: BodyId) -> Result<Aabb, StepError> {
+    let (view, rows) = step.world.body_view(body);
+    let (position, removed) = (view.read::<Position>()?, view.read::<Removed>()?);
+    Ok(Aabb::around(rows.filter(|row| removed[*row] == Removed::NO).map(|row| position[row].0)))
+}
