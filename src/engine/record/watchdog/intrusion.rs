@@ -98,7 +98,7 @@ impl Intrusion {
             [false, true] => finer(&format!("`{}`", names[1])),
         };
         step.warnings.push(format!(
-            "{}: contact does not hold them apart, and its forces are wrong; {what_to_do}",
+            "{}: contact does not hold them apart there, and its forces may be off by half or more; {what_to_do}",
             found.text(id, names, x, step.clock.time)
         ));
         Ok(())
