@@ -1,9 +1,9 @@
 //! The watchdog: examines every step for conditions that invalidate results, and stops the run or warns.
 
+mod bodies_inside;
 mod domain;
 mod energy_growth;
 mod hourglass;
-mod intrusion;
 mod particles_in;
 mod passing;
 mod remedies;

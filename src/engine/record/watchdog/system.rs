@@ -1,9 +1,9 @@
 //! The system of the watchdog.
 
+use super::bodies_inside::BodiesInside;
 use super::domain::DomainCheck;
 use super::energy_growth::{EnergyGrowth, resolution};
 use super::hourglass::HourglassShare;
-use super::intrusion::Intrusion;
 use super::passing::PassingBodies;
 use super::remedies::Remedies;
 use super::soft_under_pressure::SoftUnderPressure;
@@ -27,7 +27,7 @@ struct Watchdog {
     hourglass: HourglassShare,
     wrong_sign: WrongSign,
     passing: PassingBodies,
-    intrusion: Intrusion,
+    inside: BodiesInside,
     soft: SoftUnderPressure,
     remedies: Remedies,
     domain: Option<DomainCheck>,
@@ -46,7 +46,7 @@ pub fn add_system(sim: &mut SimBuilder<'_>) {
         hourglass: HourglassShare::new(sim),
         wrong_sign: WrongSign::new(sim),
         passing: PassingBodies::new(sim),
-        intrusion: Intrusion::new(sim),
+        inside: BodiesInside::new(sim),
         soft: SoftUnderPressure::new(sim),
         remedies: Remedies::new(sim),
         domain,
@@ -76,7 +76,7 @@ impl Run for Watchdog {
                 self.hourglass.warn(step);
             }
             self.passing.look(step)?;
-            self.intrusion.look(step)?;
+            self.inside.look(step)?;
             self.soft.look(step)?;
             self.wrong_sign.warn(step, &self.remedies, at_end);
         }
@@ -88,7 +88,7 @@ impl Run for Watchdog {
             self.energy,
             &self.hourglass,
             &self.wrong_sign,
-            (&self.passing.told, &self.intrusion.told),
+            (&self.passing.told, &self.inside.told),
             &self.soft.told,
             self.frames,
         ))
@@ -96,13 +96,13 @@ impl Run for Watchdog {
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        let Ok((energy, hourglass, wrong_sign, (passing, intrusion), soft, frames)) =
+        let Ok((energy, hourglass, wrong_sign, (passing, inside), soft, frames)) =
             postcard::from_bytes(state)
         else {
             return false;
         };
         (self.energy, self.hourglass, self.wrong_sign) = (energy, hourglass, wrong_sign);
-        (self.passing.told, self.intrusion.told) = (passing, intrusion);
+        (self.passing.told, self.inside.told) = (passing, inside);
         self.soft.told = soft;
         self.frames.resume(frames);
         true

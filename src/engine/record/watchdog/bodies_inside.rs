@@ -30,7 +30,7 @@ const NEAREST: f64 = 0.9;
 const ENCLOSED: f64 = 0.3;
 
 /// Checks for particles inside other bodies.
-pub(super) struct Intrusion {
+pub(super) struct BodiesInside {
     pairs: Vec<[BodyId; 2]>,
     /// Shapes in the reference configuration of the deformable bodies among them.
     solids: Vec<(BodyId, Box<dyn Region>)>,
@@ -40,7 +40,7 @@ pub(super) struct Intrusion {
     pub told: Vec<bool>,
 }
 
-impl Intrusion {
+impl BodiesInside {
     /// All pairs of solids, rigid bodies and walls that have a contact.
     pub fn new(sim: &SimBuilder<'_>) -> Self {
         let touching = sim.touching_pairs();
