@@ -75,9 +75,9 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     let groups = bodies.groups.clone();
     let mut cloud = cloud(bodies, common, repulsion_range, sim)?;
     cloud.decide_what_others_know(WallShapes::are_asked_for(&groups, sim));
-    let spin = cloud.viscosities.spin;
-    advice::unfelt_walls(&walls, spin, sim);
-    advice::finer_walls(&walls, spin, sim.body(groups[0].body).spacing, sim);
+    let (spin, is_viscous) = (cloud.viscosities.spin, cloud.viscosities.is_viscous);
+    advice::unfelt_walls(&walls, is_viscous, sim);
+    advice::finer_walls(&walls, is_viscous, sim.body(groups[0].body).spacing, sim);
     let (walls, touching, gravity) = (advice::walls(sim), sim.touching_pairs(), sim.gravity());
     advice::stiff_interface(&cloud, gravity, sim);
     sim.add_setup(move |setup| {
@@ -193,7 +193,8 @@ fn cloud(
 ) -> Result<FlowCloud, SetupError> {
     let Bodies { groups, fluid, thin } = bodies;
     let Common { kernel, support, spacing, periodic, plane } = common;
-    let viscosities = Viscosities::new(&groups, kernel.smoothing_length());
+    let turns = groups.iter().any(|group| group.sticks() && may_turn(sim.body(group.body), sim));
+    let viscosities = Viscosities::new(&groups, kernel.smoothing_length(), turns);
     let spin = viscosities.spin;
     let skins = Skins::new(support, spacing, &periodic);
     let ends = groups.iter().map(|group| group.cloud.end as u32).collect();
@@ -247,6 +248,16 @@ fn sides(groups: &[Group], sim: &SimBuilder<'_>) -> Vec<GapSide> {
     groups.iter().filter_map(side).collect()
 }
 
+/// Whether a boundary may turn as a whole: a rigid body, or a wall that a condition moves.
+fn may_turn(body: &BodyPlan, sim: &SimBuilder<'_>) -> bool {
+    let rows = (body.phase, body.rows.start as u32)..(body.phase, body.rows.end as u32);
+    match body.kind {
+        BodyKind::Rigid => true,
+        BodyKind::Boundary => sim.prescribed.range(rows).next().is_some(),
+        _ => false,
+    }
+}
+
 /// Neighbourhoods within the bodies that deform, with spin within those to which fluids stick, and within
 /// those on a part of which a probe measures the force.
 fn neighborhoods(
@@ -256,11 +267,10 @@ fn neighborhoods(
     sim: &SimBuilder<'_>,
 ) -> Result<Vec<Neighborhood>, SetupError> {
     let is_soft = |group: &Group| sim.body(group.body).kind == BodyKind::Solid;
-    let sticks = |group: &Group| matches!(&group.role, Role::Boundary(surface) if surface.no_slip);
     let mut all: Vec<Neighborhood> = Vec::new();
     for group in groups.iter().filter(|group| group.fluid().is_none()) {
         let is_soft = is_soft(group);
-        let has_friction = spin && (is_soft || sticks(group));
+        let has_friction = spin && (is_soft || group.sticks());
         let asks = is_soft || has_friction || is_measured_in_part(group.body, sim);
         if asks && all.last().is_none_or(|near| near.body != group.body) {
             let near = Neighborhood::new(sim.body(group.body), spacing, &sim.periodic());

@@ -2,9 +2,12 @@
 
 use super::group::{Group, Role};
 
-/// Minimum kinematic viscosity, in units of c_0 h, at which friction is corrected by the spin: below it a
-/// flow has other losses.
-pub const MIN_VISCOSITY: f64 = 1e-4;
+/// Kinematic viscosity, in units of c_0 h, above which a fluid is viscous and friction is corrected by the
+/// spin: a flow at a tenth of the speed of sound has larger other losses below it.
+const VISCOUS: f64 = 1e-4;
+/// The same above which friction is corrected by the spin where a boundary to which the fluid sticks may turn:
+/// sound is often far more than ten times as fast as that.
+pub const MIN_VISCOSITY: f64 = 1e-5;
 
 /// Friction that goes into the sums of a loop: none, without spins, and corrected by these.
 pub const NONE: u8 = 0;
@@ -20,21 +23,23 @@ pub struct Viscosities {
     starts: Vec<usize>,
     /// Whether friction is corrected by the spin.
     pub spin: bool,
+    /// Whether a fluid is viscous.
+    pub is_viscous: bool,
 }
 
 impl Viscosities {
-    /// Those of a flow of smoothing length `h`, m.
-    pub fn new(groups: &[Group], h: f64) -> Self {
+    /// Those of a flow of smoothing length `h`, m; `turns` says whether a boundary to which fluids stick may.
+    pub fn new(groups: &[Group], h: f64, turns: bool) -> Self {
         let of = |a: &Group| groups.iter().map(|b| between(&a.role, &b.role)).collect::<Vec<f64>>();
-        let viscous = |group: &Group| {
-            group
-                .fluid()
-                .is_some_and(|state| state.viscosity > MIN_VISCOSITY * state.density * state.sound_speed * h)
+        let reaches = |least: f64| {
+            let mut fluids = groups.iter().filter_map(Group::fluid);
+            fluids.any(|state| state.viscosity > least * state.density * state.sound_speed * h)
         };
         Self {
             values: groups.iter().flat_map(of).collect(),
             starts: groups.iter().map(|group| group.cloud.start).collect(),
-            spin: groups.iter().any(viscous),
+            spin: reaches(if turns { MIN_VISCOSITY } else { VISCOUS }),
+            is_viscous: reaches(VISCOUS),
         }
     }
 

@@ -35,28 +35,38 @@ fn a_flow_that_ends_before_its_pressure_has_spread_is_warned_of() {
     assert!(is_told && speed > 1.5 * settled, "{speed} m/s, {settled} m/s with pressure that has spread");
 }
 
-/// A cylinder that turns in a ring of oil twice as wide. With a sound so fast that friction has no spin its
-/// torque is a quarter of what it should be.
+/// A cylinder that turns in a ring of oil twice as wide, if `motion` moves it so: what friction has dissipated
+/// after `end`, s, J, and whether the run says that torques are wrong.
+fn turned_cylinder(sound: f64, motion: &str, end: f64) -> (f64, bool) {
+    let mut sim = simulation(&format!(
+        r#"(dimension: Two, materials: {{"oil": Fluid(density: 1000.0, sound_speed: {sound}, viscosity: 0.2), "wood": NeoHookean(density: 500.0, young: 1e6, poisson: 0.3)}},
+            bodies: [
+                (name: "oil", material: "oil", shape: Ring(center: (0, 0), inner: 0.1, outer: 0.2), spacing: 0.02, lattice: Concentric, formulation: Fluid(pressure: "0")),
+                (name: "rotor", material: "wood", shape: Ring(center: (0, 0), inner: 0.02, outer: 0.1), spacing: 0.02, lattice: Concentric, formulation: Rigid()),
+                (name: "ring", material: "wall", shape: Ring(center: (0, 0), inner: 0.2, outer: 0.28), spacing: 0.02, lattice: Concentric,
+                 formulation: Wall(slip: No, suction: true)),
+            ],
+            conditions: [{motion}], time: (end: {end}))"#
+    ));
+    sim.run(|_| true).expect("a run");
+    let is_told = sim.warnings().iter().any(|text| text.contains("corrected for rotation"));
+    (sim.ledger().total_named("viscosity"), is_told)
+}
+
+const TURNS: &str = r#"RotationRate(on: Select(body: "rotor"), rate: 0.05)"#;
+
+/// Friction has spin below 670 m/s.
 #[test]
 fn torques_of_friction_without_spin_are_warned_of() {
-    let warns = |sound: f64, motion: &str| {
-        let mut sim = simulation(&format!(
-            r#"(dimension: Two, materials: {{"oil": Fluid(density: 1000.0, sound_speed: {sound}, viscosity: 0.2), "wood": NeoHookean(density: 500.0, young: 1e6, poisson: 0.3)}},
-                bodies: [
-                    (name: "oil", material: "oil", shape: Ring(center: (0, 0), inner: 0.1, outer: 0.2), spacing: 0.02, lattice: Concentric, formulation: Fluid(pressure: "0")),
-                    (name: "rotor", material: "wood", shape: Ring(center: (0, 0), inner: 0.02, outer: 0.1), spacing: 0.02, lattice: Concentric, formulation: Rigid()),
-                    (name: "ring", material: "wall", shape: Ring(center: (0, 0), inner: 0.2, outer: 0.28), spacing: 0.02, lattice: Concentric,
-                     formulation: Wall(slip: No, suction: true)),
-                ],
-                conditions: [{motion}], time: (end: 0.4))"#
-        ));
-        sim.run(|_| true).expect("a run");
-        sim.warnings().iter().any(|text| text.contains("corrected for rotation"))
-    };
-    let turns = r#"RotationRate(on: Select(body: "rotor"), rate: 0.05)"#;
+    let warns = |sound: f64, motion: &str| turned_cylinder(sound, motion, 0.04).1;
     let moves = r#"Velocity(on: Select(body: "rotor"), value: ("0.005", "0.0"))"#;
-    // Friction has spin below 67 m/s.
-    assert!(!warns(20.0, turns));
-    assert!(warns(100.0, turns));
-    assert!(!warns(100.0, moves));
+    assert!(!warns(100.0, TURNS));
+    assert!(warns(1000.0, TURNS));
+    assert!(!warns(1000.0, moves));
+}
+
+#[test]
+fn friction_beside_what_turns_does_not_depend_on_the_speed_of_sound() {
+    let [slow, fast] = [20.0, 140.0].map(|sound| turned_cylinder(sound, TURNS, 0.2).0);
+    assert!((fast / slow - 1.0).abs() < 0.02, "{fast} J, {slow} J with a slower sound");
 }

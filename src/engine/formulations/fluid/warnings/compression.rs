@@ -61,7 +61,8 @@ impl CompressionWatch {
         step: &mut Step<'_>,
     ) {
         self.bodies.resize(cloud.groups.len(), ReportedDeviation::default());
-        let is_slow = cloud.viscosities.spin && step.ledger.total_named("viscosity") > step.ledger.motion();
+        let is_slow =
+            cloud.viscosities.is_viscous && step.ledger.total_named("viscosity") > step.ledger.motion();
         for (group, told) in cloud.groups.iter().zip(&mut self.bodies) {
             let Some(state) = group.fluid() else { break };
             let records = &cloud.records[group.cloud.clone()];

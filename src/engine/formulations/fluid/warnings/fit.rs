@@ -4,12 +4,14 @@
 //! effective position of a surface is wrong by up to half a spacing, and forces are those of uneven
 //! particles. `sum_j V_j W_ij` of the particles beside the boundary shows it.
 
+use std::ops::Range;
+
+use glam::DVec3;
 use rayon::prelude::*;
 
 use super::filling::filling;
 use crate::formulations::fluid::cloud::{FlowCloud, RowSums};
 use crate::schedule::Step;
-use crate::world::BodyId;
 
 /// Distance of the particles beside a boundary from one of its particles, over their spacing.
 const BESIDE: f64 = 1.5;
@@ -20,7 +22,7 @@ const MAX_DEVIATION: f64 = 0.04;
 const MIN_COUNT: usize = 8;
 /// Distances of particles that face a boundary across a gap from the nearest one of it, over the mean of both
 /// spacings: half a spacing to two of empty space. Particles farther away are meant to fall.
-const ACROSS: std::ops::Range<f64> = 1.5..3.0;
+const ACROSS: Range<f64> = 1.5..3.0;
 /// Part of the particles that face a boundary that has to be across a gap: stairs of round bodies have a few.
 const PART: f64 = 0.2;
 /// Share of the distance from a boundary within which another particle of the flow is in between.
@@ -43,9 +45,12 @@ pub fn look(cloud: &FlowCloud, scratch: &mut Vec<Option<f64>>, step: &mut Step<'
                 continue;
             }
             let names = || [fluid.body, boundary.body].map(|body| &step.world.body(body).name);
+            let of_boundary = cloud.groups.iter().filter(|group| group.body == boundary.body);
+            let of_boundary: Vec<Range<usize>> = of_boundary.map(|group| group.cloud.clone()).collect();
             let particles = fluid.cloud.clone().into_par_iter();
+            let near: Vec<Nearest> = particles.filter_map(|i| nearest(cloud, i, &of_boundary)).collect();
             let facing: Vec<f64> =
-                particles.filter_map(|i| distance_across(cloud, i, boundary.body)).collect();
+                near.par_iter().filter_map(|nearest| nearest.distance_across(cloud)).collect();
             let across = || facing.iter().filter(|distance| ACROSS.contains(distance));
             if across().count() >= MIN_COUNT && across().count() as f64 > PART * facing.len() as f64 {
                 let gap = mean(across().copied()) - 1.0;
@@ -53,21 +58,10 @@ pub fn look(cloud: &FlowCloud, scratch: &mut Vec<Option<f64>>, step: &mut Step<'
                 step.warnings.push(text);
                 continue;
             }
-            let is_beside = |i: usize| {
-                let own = &cloud.records[i];
-                let reach = BESIDE * own.volume().powf(if cloud.plane { 1.0 / 2.0 } else { 1.0 / 3.0 });
-                let of_boundary = |j: usize| {
-                    cloud.groups.iter().any(|group| group.body == boundary.body && group.cloud.contains(&j))
-                };
-                let to = |j: usize| cloud.offset(own.position(), cloud.records[j].position()).length();
-                cloud
-                    .near_row(i)
-                    .iter()
-                    .map(|&j| j as usize)
-                    .any(|j| j >= cloud.fluid && of_boundary(j) && to(j) < reach)
-            };
+            let is_beside = |nearest: &&Nearest| nearest.distance < BESIDE * spacing(cloud, nearest.i);
+            let filling = |nearest: &Nearest| scratch[nearest.i - fluid.cloud.start];
             let beside: Vec<f64> =
-                rows().filter(|(i, _)| is_beside(*i)).map(|(_, filling)| filling / even).collect();
+                near.iter().filter(is_beside).filter_map(filling).map(|filling| filling / even).collect();
             let deviation = mean(beside.iter().map(|filling| (filling - 1.0).powi(2))).sqrt();
             if beside.len() >= MIN_COUNT && deviation > MAX_DEVIATION {
                 let text = text(names(), mean(beside.iter().copied()), deviation);
@@ -77,24 +71,45 @@ pub fn look(cloud: &FlowCloud, scratch: &mut Vec<Option<f64>>, step: &mut Step<'
     }
 }
 
-/// Distance of a particle from the nearest one of a boundary over the mean of their spacings; none where
-/// another particle of the flow is between them, or none of the boundary is near.
-fn distance_across(cloud: &FlowCloud, i: usize, boundary: BodyId) -> Option<f64> {
+/// The particle of a boundary that is nearest to one of a fluid.
+struct Nearest {
+    /// Particle of the fluid, and that of the boundary.
+    i: usize,
+    j: usize,
+    /// Their distance, m.
+    distance: f64,
+}
+
+/// The nearest of the particles of a boundary to particle `i`; none where none is near.
+fn nearest(cloud: &FlowCloud, i: usize, of_boundary: &[Range<usize>]) -> Option<Nearest> {
     let row = cloud.near_row(i);
-    let begin = row.partition_point(|&j| (j as usize) < cloud.fluid);
-    let (flow, bounds) = row.split_at(begin);
-    let at = |j: u32| cloud.records[j as usize].position();
-    let of_boundary = |j: &&u32| {
-        let j = **j as usize;
-        cloud.groups.iter().any(|group| group.body == boundary && group.cloud.contains(&j))
-    };
-    let to = |j: u32| cloud.offset(cloud.records[i].position(), at(j)).length();
-    let nearest = bounds.iter().filter(of_boundary).copied().min_by(|&j, &k| to(j).total_cmp(&to(k)))?;
-    let is_between =
-        |&k: &u32| k as usize != i && cloud.offset(at(k), at(nearest)).length() < BETWEEN * to(nearest);
-    let spacing = |j: usize| cloud.records[j].volume().powf(if cloud.plane { 1.0 / 2.0 } else { 1.0 / 3.0 });
-    let mean_spacing = 0.5 * (spacing(i) + spacing(nearest as usize));
-    (!flow.iter().any(is_between)).then(|| to(nearest) / mean_spacing)
+    // Boundaries come last: inside of the fluid nothing is looked at.
+    let bounds = row.iter().rev().map(|&j| j as usize).take_while(|&j| j >= cloud.fluid);
+    let of_boundary = bounds.filter(|j| of_boundary.iter().any(|rows| rows.contains(j)));
+    let squared = |j: usize| apart(cloud, i, j).length_squared();
+    let (j, squared) = of_boundary.map(|j| (j, squared(j))).min_by(|a, b| a.1.total_cmp(&b.1))?;
+    Some(Nearest { i, j, distance: squared.sqrt() })
+}
+
+impl Nearest {
+    /// The distance over the mean of both spacings; none where another particle of the flow is in between.
+    fn distance_across(&self, cloud: &FlowCloud) -> Option<f64> {
+        let Self { i, j, distance } = *self;
+        let fluid = cloud.near_row(i).iter().map(|&k| k as usize).take_while(|&k| k < cloud.fluid);
+        let limit = (BETWEEN * distance).powi(2);
+        let is_between = fluid.filter(|&k| k != i).any(|k| apart(cloud, k, j).length_squared() < limit);
+        (!is_between).then(|| distance / (0.5 * (spacing(cloud, i) + spacing(cloud, j))))
+    }
+}
+
+/// From particle `i` to particle `j`, m.
+fn apart(cloud: &FlowCloud, i: usize, j: usize) -> DVec3 {
+    cloud.offset(cloud.records[i].position(), cloud.records[j].position())
+}
+
+/// Spacing of a particle by its volume, m.
+fn spacing(cloud: &FlowCloud, i: usize) -> f64 {
+    cloud.records[i].volume().powf(if cloud.plane { 1.0 / 2.0 } else { 1.0 / 3.0 })
 }
 
 fn text_of_gap([fluid, boundary]: [&String; 2], count: usize, gap: f64) -> String {

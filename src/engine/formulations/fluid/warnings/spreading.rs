@@ -60,7 +60,11 @@ impl Spreading {
     pub fn look(&mut self, is_end: bool, cloud: &FlowCloud, step: &mut Step<'_>) {
         let time = step.clock.time;
         let is_middle = self.seen.middle.is_none() && time >= 0.5 * self.end;
-        if !cloud.viscosities.spin || self.seen.is_told || !(is_middle || is_end) || !cloud.loads.is_empty() {
+        if !cloud.viscosities.is_viscous
+            || self.seen.is_told
+            || !(is_middle || is_end)
+            || !cloud.loads.is_empty()
+        {
             return;
         }
         let (driving, whole) = stored(cloud, self.gravity);

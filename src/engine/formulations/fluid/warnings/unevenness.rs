@@ -43,8 +43,7 @@ impl Unevenness {
         step: &mut Step<'_>,
     ) {
         self.told.resize(cloud.groups.len(), [false; 2]);
-        // Friction without spin is that of fluids whose viscosity hardly matters.
-        if !cloud.viscosities.spin {
+        if !cloud.viscosities.is_viscous {
             return;
         }
         let is_slow = step.ledger.total_named("viscosity") > step.ledger.motion();

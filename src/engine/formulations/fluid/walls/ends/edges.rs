@@ -35,8 +35,7 @@ pub fn add_edges(
         gradient: |at| shape.gradient(cloud, at),
         spacing: shape.spacing,
     };
-    let is_edge = |at: DVec3| seen.open_part(at, points).is_some_and(|part| part > limit);
-    let at_edges = reference.par_iter().enumerate().filter(|(_, place)| is_edge(place.0));
+    let at_edges = reference.par_iter().enumerate().filter(|(_, place)| seen.is_edge(place.0, points, limit));
     out.par_extend(at_edges.map(|(k, _)| shape.group.cloud.start + k));
 }
 
@@ -49,18 +48,18 @@ struct SeenShape<D, B, G> {
 }
 
 impl<D: Fn(DVec3) -> f64, B: Fn(DVec3) -> f64, G: Fn(DVec3) -> DVec3> SeenShape<D, B, G> {
-    /// Part of the sphere around a particle that is outside of the shape; none of a particle that is not near
-    /// its surface.
-    fn open_part(&self, at: DVec3, points: &SpherePoints) -> Option<f64> {
+    /// Whether more than a part `limit` of the sphere around a particle near the surface is outside of the
+    /// shape.
+    fn is_edge(&self, at: DVec3, points: &SpherePoints, limit: f64) -> bool {
         let depth = -(self.distance)(at);
         if !(0.0..DEPTH * self.spacing).contains(&depth) {
-            return None;
+            return false;
         }
         // As from the first row of a lattice, wherever the particle is.
         let out = (self.gradient)(at).normalize_or_zero();
         let from = at + (depth - 0.5 * self.spacing) * out;
         let radius = RADIUS * self.spacing;
-        Some(points.part(radius, |unit| (self.bound)(from + radius * unit)))
+        points.is_open(radius, -out, limit, |unit| (self.bound)(from + radius * unit))
     }
 }
 
@@ -94,25 +93,35 @@ impl SpherePoints {
         Self { units, around }
     }
 
-    /// Part of the points on a sphere of that radius that are outside of a shape; `bound` has the sign of the
-    /// distance from it and is no larger, so that all points that are nearer than it are on the same side.
-    fn part(&self, radius: f64, bound: impl Fn(DVec3) -> f64) -> f64 {
+    /// Whether more than a part `limit` of the points on a sphere of that radius are outside of a shape;
+    /// `bound` has the sign of the distance from it and is no larger, so that all points that are nearer than
+    /// it are on the same side. They are looked at from the one farthest `inward` on, beside which most of
+    /// them are within such a distance.
+    fn is_open(&self, radius: f64, inward: DVec3, limit: f64, bound: impl Fn(DVec3) -> f64) -> bool {
+        let count = self.units.len();
+        let begin = (1..count).fold(0, |begin, k| {
+            if self.units[k].dot(inward) > self.units[begin].dot(inward) { k } else { begin }
+        });
         let mut is_known = [false; POINTS[1]];
-        let mut outside = 0;
-        for (k, unit) in self.units.iter().enumerate() {
+        let [mut outside, mut inside] = [0; 2];
+        for &(_, k) in &self.around[begin] {
             if is_known[k] {
                 continue;
             }
-            let bound = bound(*unit);
-            let mut same = 1;
+            let bound = bound(self.units[k]);
+            let side = if bound > 0.0 { &mut outside } else { &mut inside };
+            *side += 1;
             is_known[k] = true;
             for &(_, other) in self.around[k].iter().take_while(|(way, _)| radius * way < bound.abs()) {
-                same += usize::from(!is_known[other]);
+                *side += usize::from(!is_known[other]);
                 is_known[other] = true;
             }
-            outside += if bound > 0.0 { same } else { 0 };
+            let part = |points: usize| points as f64 / count as f64;
+            if part(outside) > limit || part(count - inside) <= limit {
+                break;
+            }
         }
-        outside as f64 / self.units.len() as f64
+        outside as f64 / count as f64 > limit
     }
 }
 
@@ -169,9 +178,8 @@ mod tests {
         let shape = edge(angle, spacing);
         // In space away from the ends of the edge.
         let is_near = |at: &DVec3| at.z.abs() < 0.25 && at.truncate().length() < 5.0 * spacing;
-        let near = particles(lattice, angle, spacing, plane).into_iter().filter(is_near);
-        let parts = near.filter_map(|at| shape.open_part(at, &points));
-        parts.fold(0.0, f64::max) > OUTSIDE[usize::from(!plane)]
+        let mut near = particles(lattice, angle, spacing, plane).into_iter().filter(is_near);
+        near.any(|at| shape.is_edge(at, &points, OUTSIDE[usize::from(!plane)]))
     }
 
     /// However the rows of a lattice lie to an edge: its place among them changes with the spacing.
@@ -195,7 +203,7 @@ mod tests {
 
     /// Points that are not looked at, because one beside them is far from the surface, count as they are.
     #[test]
-    fn the_open_part_is_that_of_all_points() {
+    fn a_sphere_is_open_if_enough_of_all_points_are_outside() {
         for plane in [true, false] {
             let points = SpherePoints::new(plane);
             for (x, y, z) in
@@ -204,7 +212,11 @@ mod tests {
                 // A corner, from which the distance is underestimated outside.
                 let bound = |unit: DVec3| (1.2 * unit - DVec3::new(x, y, z)).max_element();
                 let all = points.units.iter().filter(|unit| bound(**unit) > 0.0).count();
-                assert_eq!(points.part(1.2, bound), all as f64 / points.units.len() as f64, "{x} {y} {z}");
+                for count in [0, all.saturating_sub(1), all, all + 1] {
+                    let limit = count as f64 / points.units.len() as f64;
+                    let is_open = points.is_open(1.2, DVec3::new(x, y, z).normalize(), limit, bound);
+                    assert_eq!(is_open, all > count, "{x} {y} {z}: {count} of {all}");
+                }
             }
         }
     }
@@ -217,8 +229,7 @@ mod tests {
             let is_seen = |radius: f64| {
                 let distance = |at: DVec3| at.length() - radius;
                 let ball = SeenShape { distance, bound: distance, gradient: |at| at, spacing: 1.0 };
-                let part = ball.open_part((radius - 0.5) * DVec3::X, &points);
-                part.is_some_and(|part| part > OUTSIDE[usize::from(!plane)])
+                ball.is_edge((radius - 0.5) * DVec3::X, &points, OUTSIDE[usize::from(!plane)])
             };
             assert!(is_seen(thin) && !is_seen(thick), "{plane}");
         }
