@@ -124,6 +124,44 @@ fn a_linear_velocity_moves_no_particle() {
     }
 }
 
+/// Displacements leave velocities alone, and what they supply is lost by a friction of opposite forces between
+/// neighbours: momentum is exact. Moments of momentum change as particles are displaced across their velocity.
+#[test]
+fn a_drop_keeps_its_momentum_and_its_volume() {
+    let text = r#"(dimension: Two, precision: Double, materials: {"water": Fluid(density: 1000, sound_speed: 20)},
+            bodies: [(name: "drop", material: "water", shape: Sphere(center: (0, 0), radius: 0.1), spacing: 0.005, formulation: Fluid, plugins: [xsph(), density_diffusion()])],
+            conditions: [InitialVelocity(on: Select(body: "drop"), value: ("0.3 + sin(40*y)", "0.5*cos(30*x) + 3*x"))],
+            time: (end: 0.05))"#;
+    let mut registry = Registry::standard();
+    xsph::register(&mut registry);
+    density_diffusion::register(&mut registry);
+    let (scene, source) = parse(Source::new("test.ron", text)).expect("a scene");
+    let mut sim = build(&scene, &source, &registry).expect("a simulation");
+    // Momentum, angular momentum and volume; the sums of their sizes.
+    let sums = |sim: &Simulation| {
+        let (x, v) = (column::<Position>(sim), column::<Velocity>(sim));
+        let (m, rho) = (column::<Mass>(sim), column::<Density>(sim));
+        let (mut momentum, mut size, mut angular, mut angular_size, mut volume) =
+            (DVec3::ZERO, 0.0, 0.0, 0.0, 0.0);
+        for i in 0..x.len() {
+            let (p, arm) = (m[i].0 * v[i].0, x[i].0);
+            (momentum, size) = (momentum + p, size + p.length());
+            (angular, angular_size) = (angular + arm.cross(p).z, angular_size + arm.length() * p.length());
+            volume += m[i].0 / rho[i].0;
+        }
+        (momentum, size, angular, angular_size, volume)
+    };
+    let (momentum, size, angular, angular_size, volume) = sums(&sim);
+    sim.run(|_| true).expect("a run");
+    let (momentum_after, _, angular_after, _, volume_after) = sums(&sim);
+    assert!(momentum_after.distance(momentum) < 1e-12 * size, "{momentum} {momentum_after}");
+    assert!(
+        (angular_after - angular).abs() < 1e-3 * angular_size,
+        "{angular} {angular_after} of {angular_size}"
+    );
+    assert!((volume_after / volume - 1.0).abs() < 1e-3, "{volume} {volume_after}");
+}
+
 #[test]
 fn off_is_as_if_it_were_not_there() {
     let hash = |plugins: &str| {

@@ -7,7 +7,7 @@ use super::group::{Group, Role};
 const VISCOUS: f64 = 1e-4;
 /// The same above which friction is corrected by the spin where a boundary to which the fluid sticks may turn:
 /// sound is often far more than ten times as fast as that.
-pub const MIN_VISCOSITY: f64 = 1e-5;
+const VISCOUS_WHERE_TURNED: f64 = 1e-5;
 
 /// Friction that goes into the sums of a loop: none, without spins, and corrected by these.
 pub const NONE: u8 = 0;
@@ -23,6 +23,8 @@ pub struct Viscosities {
     starts: Vec<usize>,
     /// Whether friction is corrected by the spin.
     pub spin: bool,
+    /// Kinematic viscosity over c_0 above which it is, m.
+    pub least: f64,
     /// Whether a fluid is viscous.
     pub is_viscous: bool,
 }
@@ -33,13 +35,15 @@ impl Viscosities {
         let of = |a: &Group| groups.iter().map(|b| between(&a.role, &b.role)).collect::<Vec<f64>>();
         let reaches = |least: f64| {
             let mut fluids = groups.iter().filter_map(Group::fluid);
-            fluids.any(|state| state.viscosity > least * state.density * state.sound_speed * h)
+            fluids.any(|state| state.viscosity > least * state.density * state.sound_speed)
         };
+        let least = h * if turns { VISCOUS_WHERE_TURNED } else { VISCOUS };
         Self {
             values: groups.iter().flat_map(of).collect(),
             starts: groups.iter().map(|group| group.cloud.start).collect(),
-            spin: reaches(if turns { MIN_VISCOSITY } else { VISCOUS }),
-            is_viscous: reaches(VISCOUS),
+            spin: reaches(least),
+            least,
+            is_viscous: reaches(h * VISCOUS),
         }
     }
 

@@ -9,7 +9,7 @@
 use glam::DVec3;
 
 use super::closed::named;
-use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud, Group, MIN_VISCOSITY};
+use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud, Group};
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::notation::quantity;
 use crate::removal::REMOVED_ENERGY;
@@ -41,9 +41,9 @@ pub fn look(is_told: &mut bool, cloud: &FlowCloud, step: &mut Step<'_>) {
     let turns =
         |group: &&Group| group.sticks() && rim_speed(&cloud.records()[group.cloud.clone()]) > RIM * fastest;
     let Some(group) = cloud.groups.iter().find(turns) else { return };
-    let least = MIN_VISCOSITY * cloud.kernel.smoothing_length();
     let fluids = cloud.groups.iter().filter_map(|group| group.fluid());
-    let sound = fluids.map(|fluid| fluid.viscosity / (fluid.density * least)).fold(0.0, f64::max);
+    let sound =
+        fluids.map(|fluid| fluid.viscosity / (fluid.density * cloud.viscosities.least)).fold(0.0, f64::max);
     *is_told = true;
     step.warnings.push(format!(
         "`{}` turns in {}, whose friction has dissipated {} by {}, more than all stabilizers, but is too small beside its sound to be corrected for rotation: torques are wrong (0.2 to 0.9 of it on a cylinder that turns in a ring twice as wide, 1.0 to 1.6 on the ring), and free bodies turn at a wrong rate; \
