@@ -5,8 +5,8 @@ use super::group::{Group, Role};
 /// Kinematic viscosity, in units of c_0 h, above which a fluid is viscous and friction is corrected by the
 /// spin: a flow at a tenth of the speed of sound has larger other losses below it.
 const VISCOUS: f64 = 1e-4;
-/// The same above which friction is corrected by the spin where a boundary to which the fluid sticks may turn:
-/// sound is often far more than ten times as fast as that.
+/// The same above which friction is corrected by the spin where a boundary to which the fluid sticks may
+/// turn: sound is often far more than ten times as fast as that.
 const VISCOUS_WHERE_TURNED: f64 = 1e-5;
 
 /// Friction that goes into the sums of a loop: none, without spins, and corrected by these.

@@ -48,7 +48,8 @@ pub fn look(cloud: &FlowCloud, scratch: &mut Vec<Option<f64>>, step: &mut Step<'
             let of_boundary = cloud.groups.iter().filter(|group| group.body == boundary.body);
             let of_boundary: Vec<Range<usize>> = of_boundary.map(|group| group.cloud.clone()).collect();
             let particles = fluid.cloud.clone().into_par_iter();
-            let near: Vec<Nearest> = particles.filter_map(|i| nearest(cloud, i, &of_boundary)).collect();
+            let near: Vec<BesideBoundary> =
+                particles.filter_map(|i| nearest(cloud, i, &of_boundary)).collect();
             let facing: Vec<f64> =
                 near.par_iter().filter_map(|nearest| nearest.distance_across(cloud)).collect();
             let across = || facing.iter().filter(|distance| ACROSS.contains(distance));
@@ -58,8 +59,8 @@ pub fn look(cloud: &FlowCloud, scratch: &mut Vec<Option<f64>>, step: &mut Step<'
                 step.warnings.push(text);
                 continue;
             }
-            let is_beside = |nearest: &&Nearest| nearest.distance < BESIDE * spacing(cloud, nearest.i);
-            let filling = |nearest: &Nearest| scratch[nearest.i - fluid.cloud.start];
+            let is_beside = |nearest: &&BesideBoundary| nearest.distance < BESIDE * spacing(cloud, nearest.i);
+            let filling = |nearest: &BesideBoundary| scratch[nearest.i - fluid.cloud.start];
             let beside: Vec<f64> =
                 near.iter().filter(is_beside).filter_map(filling).map(|filling| filling / even).collect();
             let deviation = mean(beside.iter().map(|filling| (filling - 1.0).powi(2))).sqrt();
@@ -72,7 +73,7 @@ pub fn look(cloud: &FlowCloud, scratch: &mut Vec<Option<f64>>, step: &mut Step<'
 }
 
 /// The particle of a boundary that is nearest to one of a fluid.
-struct Nearest {
+struct BesideBoundary {
     /// Particle of the fluid, and that of the boundary.
     i: usize,
     j: usize,
@@ -81,17 +82,17 @@ struct Nearest {
 }
 
 /// The nearest of the particles of a boundary to particle `i`; none where none is near.
-fn nearest(cloud: &FlowCloud, i: usize, of_boundary: &[Range<usize>]) -> Option<Nearest> {
+fn nearest(cloud: &FlowCloud, i: usize, of_boundary: &[Range<usize>]) -> Option<BesideBoundary> {
     let row = cloud.near_row(i);
     // Boundaries come last: inside of the fluid nothing is looked at.
     let bounds = row.iter().rev().map(|&j| j as usize).take_while(|&j| j >= cloud.fluid);
     let of_boundary = bounds.filter(|j| of_boundary.iter().any(|rows| rows.contains(j)));
     let squared = |j: usize| apart(cloud, i, j).length_squared();
     let (j, squared) = of_boundary.map(|j| (j, squared(j))).min_by(|a, b| a.1.total_cmp(&b.1))?;
-    Some(Nearest { i, j, distance: squared.sqrt() })
+    Some(BesideBoundary { i, j, distance: squared.sqrt() })
 }
 
-impl Nearest {
+impl BesideBoundary {
     /// The distance over the mean of both spacings; none where another particle of the flow is in between.
     fn distance_across(&self, cloud: &FlowCloud) -> Option<f64> {
         let Self { i, j, distance } = *self;
