@@ -124,8 +124,9 @@ fn a_linear_velocity_moves_no_particle() {
     }
 }
 
-/// Displacements leave velocities alone, and what they supply is lost by a friction of opposite forces between
-/// neighbours: momentum is exact. Moments of momentum change as particles are displaced across their velocity.
+/// Displacements leave velocities alone, and what they supply is lost by a friction of opposite forces
+/// between neighbours: momentum is exact. Angular momentum changes as particles are displaced across their
+/// velocity.
 #[test]
 fn a_drop_keeps_its_momentum_and_its_volume() {
     let text = r#"(dimension: Two, precision: Double, materials: {"water": Fluid(density: 1000, sound_speed: 20)},

@@ -35,8 +35,8 @@ fn a_flow_that_ends_before_its_pressure_has_spread_is_warned_of() {
     assert!(is_told && speed > 1.5 * settled, "{speed} m/s, {settled} m/s with pressure that has spread");
 }
 
-/// A cylinder that turns in a ring of oil twice as wide, if `motion` moves it so: what friction has dissipated
-/// after `end`, s, J, and whether the run says that torques are wrong.
+/// A cylinder that turns in a ring of oil twice as wide, if `motion` moves it so: what friction has
+/// dissipated after `end`, s, J, and whether the run says that torques are wrong.
 fn turned_cylinder(sound: f64, motion: &str, end: f64) -> (f64, bool) {
     let mut sim = simulation(&format!(
         r#"(dimension: Two, materials: {{"oil": Fluid(density: 1000.0, sound_speed: {sound}, viscosity: 0.2), "wood": NeoHookean(density: 500.0, young: 1e6, poisson: 0.3)}},
