@@ -1,8 +1,9 @@
 //! The uniform motion of a scene: its velocity at the start, and what it adds to the energies in every step.
 
+use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
-use crate::parallel::{BlockSum, sum_over_blocks};
+use crate::parallel::{BlockSum, sum_over_own_blocks};
 use crate::rigid::{RigidBodies, RigidBody};
 use crate::scene::Scene;
 use crate::schedule::{CommonMotion, Ledger, Resources};
@@ -21,7 +22,8 @@ pub(super) struct UniformMotion {
 }
 
 /// Mass, kg, and momentum, kg m/s.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
 struct Momentum {
     mass: f64,
     momentum: DVec3,
@@ -35,7 +37,8 @@ impl BlockSum for Momentum {
 }
 
 /// What free and held particles have along each axis.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
 struct MotionAlongAxes {
     /// Mass, kg, and momentum, kg m/s, of what is free.
     mass: DVec3,
@@ -162,10 +165,10 @@ fn momentum(
         return Ok(momentum);
     }
     let (view, rows) = (world.phase(body.phase), body.rows.clone());
-    let (mass, velocity) = (view.read::<Mass>()?, view.read::<Velocity>()?);
-    let removed = view.read::<Removed>()?;
+    let (mass, velocity) = (view.read_own::<Mass>()?, view.read_own::<Velocity>()?);
+    let removed = view.read_own::<Removed>()?;
     let rows = (&mass[rows.clone()], &velocity[rows.clone()], &removed[rows]);
-    Ok(sum_over_blocks(rows, &|_, (mass, velocity, removed): Rows<'_>| {
+    Ok(sum_over_own_blocks(rows, &|_, (mass, velocity, removed): Rows<'_>| {
         let mut sum = Momentum::default();
         for ((mass, velocity), removed) in mass.iter().zip(velocity).zip(removed) {
             let mass = if *removed == Removed::NO { mass.0 } else { 0.0 };
@@ -175,7 +178,7 @@ fn momentum(
     }))
 }
 
-/// MotionAlongAxes of a body along each axis.
+/// What a body has along each axis.
 fn motion(
     world: &World,
     resources: &Resources,
@@ -198,10 +201,10 @@ fn motion(
         return Ok(motion);
     }
     let (view, rows) = (world.phase(body.phase), body.rows.clone());
-    let (mass, velocity) = (view.read::<Mass>()?, view.read::<Velocity>()?);
-    let mobility = view.read::<Mobility>()?;
+    let (mass, velocity) = (view.read_own::<Mass>()?, view.read_own::<Velocity>()?);
+    let mobility = view.read_own::<Mobility>()?;
     let rows = (&mass[rows.clone()], &velocity[rows.clone()], &mobility[rows]);
-    Ok(sum_over_blocks(rows, &|_, rows: (&[Mass], &[Velocity], &[Mobility])| {
+    Ok(sum_over_own_blocks(rows, &|_, rows: (&[Mass], &[Velocity], &[Mobility])| {
         let mut sum = MotionAlongAxes::default();
         for ((mass, velocity), mobility) in rows.0.iter().zip(rows.1).zip(rows.2) {
             sum.add(&MotionAlongAxes::of(mass.0, velocity.0, mobility.0));
