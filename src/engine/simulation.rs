@@ -76,6 +76,8 @@ pub(crate) struct SimulationParts {
     pub references: Vec<String>,
     /// Speed of sound of each body, m/s.
     pub sound_speeds: Vec<Option<f64>>,
+    /// Axes along which there are symmetry planes.
+    pub mirrored: [bool; 3],
 }
 
 /// Why a time step cannot be chosen.
@@ -155,10 +157,11 @@ impl Simulation {
             warnings,
             references,
             sound_speeds,
+            mirrored,
         } = parts;
         Self {
             ledger: Ledger::new(world.bodies().len()),
-            uniform_motion: UniformMotion::new(scene),
+            uniform_motion: UniformMotion::new(scene.gravity.0, mirrored),
             world,
             resources,
             schedule,

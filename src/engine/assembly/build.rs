@@ -125,6 +125,8 @@ fn start(
         resources.of_mut(output).prepare(&sim.references).map_err(|problem| vec![*problem])?;
     }
     let sound_speeds = sim.bodies().iter().map(|body| body.material.sound_speed()).collect();
+    let planes = sim.mirror_planes();
+    let mirrored = [0, 1, 2].map(|axis| planes.iter().any(|plane| plane.axis == axis));
     let parts = SimulationParts {
         world,
         resources,
@@ -136,6 +138,7 @@ fn start(
         warnings: sim.warnings,
         references: sim.references,
         sound_speeds,
+        mirrored,
     };
     Ok(Simulation::new(parts, scene))
 }

@@ -160,8 +160,8 @@ impl Ledger {
         self.close_step();
     }
 
-    /// Closes a step: takes the scale of the balance error. Particles that have left have done so through a
-    /// border at rest: from then on no motion is uniform.
+    /// Closes a step: takes the scale of the balance error. Of removed particles it is not known what the
+    /// uniform motion adds to the energy that they take along: from then on the scene counts as at rest.
     pub fn close_step(&mut self) {
         if self.total_named(REMOVED_ENERGY) != 0.0 {
             self.drift = None;

@@ -5,20 +5,18 @@ use glam::DVec3;
 
 use crate::parallel::{BlockSum, sum_over_own_blocks};
 use crate::rigid::{RigidBodies, RigidBody};
-use crate::scene::Scene;
 use crate::schedule::{CommonMotion, Ledger, Resources};
 use crate::world::{Body, BodyId, Mass, MissingColumn, Mobility, Removed, Velocity, World};
 
-/// Energy of the uniform motion over all kinetic energy below which the scene is at rest, and mean velocity
-/// of held particles over their mean speed.
+/// Energy of the uniform motion over all kinetic energy below which the scene is at rest.
 const AT_REST: f64 = 1e-6;
 
 /// What the uniform motion of a scene depends on.
 pub(super) struct UniformMotion {
     /// Acceleration of gravity, m/s2.
     gravity: DVec3,
-    /// Whether a symmetry plane holds the frame.
-    is_held: bool,
+    /// Axes along which symmetry planes hold the frame.
+    mirrored: [bool; 3],
 }
 
 /// Mass, kg, and momentum, kg m/s.
@@ -43,33 +41,29 @@ struct MotionAlongAxes {
     /// Mass, kg, and momentum, kg m/s, of what is free.
     mass: DVec3,
     momentum: DVec3,
-    /// Number of what is held, and sums of the velocities and of their magnitudes, m/s.
+    /// Number of what is held, and the sum of its velocities, m/s.
     count: DVec3,
     velocity: DVec3,
-    speed: DVec3,
 }
 
 impl MotionAlongAxes {
     fn of(mass: f64, velocity: DVec3, mobility: DVec3) -> Self {
         let held = DVec3::select(mobility.cmpeq(DVec3::ZERO), DVec3::ONE, DVec3::ZERO);
         let mass = mass * (DVec3::ONE - held);
-        let held_velocity = held * velocity;
-        let speed = held_velocity.abs();
-        Self { mass, momentum: mass * velocity, count: held, velocity: held_velocity, speed }
+        Self { mass, momentum: mass * velocity, count: held, velocity: held * velocity }
     }
 
-    /// Velocity of the frame along an axis, m/s, for all bodies: of the bodies with held particles, the one
-    /// against which the rest has the least energy.
+    /// Velocity of the frame along an axis, m/s, for all bodies: where particles are held, rest or the mean
+    /// velocity of those of one body, against which the rest has the least energy.
     fn frame(&self, axis: usize, bodies: &[Self]) -> f64 {
         let (mass, momentum) = (self.mass[axis], self.momentum[axis]);
+        if self.count[axis] == 0.0 {
+            return if mass > 0.0 { momentum / mass } else { 0.0 };
+        }
         let energy = |u: f64| 0.5 * mass * u * u - momentum * u;
         let held = bodies.iter().filter(|body| body.count[axis] > 0.0);
-        // A wall that turns about its centre is at rest.
-        let is_still = |of: &Self| of.velocity[axis].abs() <= AT_REST * of.speed[axis];
-        let velocity = |of: &Self| if is_still(of) { 0.0 } else { of.velocity[axis] / of.count[axis] };
-        let velocities = held.map(velocity);
-        let of_mass = if mass > 0.0 { momentum / mass } else { 0.0 };
-        velocities.min_by(|a, b| energy(*a).total_cmp(&energy(*b))).unwrap_or(of_mass)
+        let velocities = held.map(|body| body.velocity[axis] / body.count[axis]);
+        velocities.fold(0.0, |least, u| if energy(u) < energy(least) { u } else { least })
     }
 }
 
@@ -79,16 +73,15 @@ impl BlockSum for MotionAlongAxes {
         self.momentum += next.momentum;
         self.count += next.count;
         self.velocity += next.velocity;
-        self.speed += next.speed;
     }
 }
 
 type Rows<'a> = (&'a [Mass], &'a [Velocity], &'a [Removed]);
 
 impl UniformMotion {
-    pub fn new(scene: &Scene) -> Self {
-        let is_held = scene.conditions.iter().any(|condition| condition.name() == "Symmetry");
-        Self { gravity: scene.gravity.0, is_held }
+    /// That of a scene with symmetry planes along these axes, under this gravity, m/s2.
+    pub fn new(gravity: DVec3, mirrored: [bool; 3]) -> Self {
+        Self { gravity, mirrored }
     }
 
     /// The uniform motion at the start: along each axis that of held particles, or else that of the centre of
@@ -99,16 +92,15 @@ impl UniformMotion {
         resources: &Resources,
         ledger: &Ledger,
     ) -> Result<Option<CommonMotion>, MissingColumn> {
-        if self.is_held {
-            return Ok(None);
-        }
         let bodies = world.bodies().iter().enumerate();
         let of: Result<Vec<_>, _> =
             bodies.map(|(k, body)| motion(world, resources, BodyId(k), body)).collect();
         let of = of?;
         let mut all = MotionAlongAxes::default();
         of.iter().for_each(|motion| all.add(motion));
-        let velocity = DVec3::from_array([0, 1, 2].map(|axis| all.frame(axis, &of)));
+        let velocity = DVec3::from_array(
+            [0, 1, 2].map(|axis| if self.mirrored[axis] { 0.0 } else { all.frame(axis, &of) }),
+        );
         let own = 0.5 * all.mass.max_element() * velocity.length_squared();
         let moves = own > AT_REST * (ledger.total_named("kinetic") + own);
         moves.then(|| Ok(CommonMotion::new(velocity, added(velocity, world, resources)?))).transpose()
@@ -147,7 +139,9 @@ fn added(velocity: DVec3, world: &World, resources: &Resources) -> Result<Vec<f6
 
 /// The rigid body of that number, if it is one.
 fn rigid<R>(resources: &Resources, id: BodyId, of: impl Fn(&RigidBody) -> R) -> Option<R> {
-    resources.try_get::<RigidBodies>()?.iter().find(|body| body.id == id).map(of)
+    let bodies = resources.try_get::<RigidBodies>()?;
+    let at = bodies.binary_search_by_key(&id, |body| body.id).ok()?;
+    Some(of(&bodies[at]))
 }
 
 /// Mass and momentum of a body.
@@ -190,12 +184,7 @@ fn motion(
         let free = |axis| if body.is_driven_along(axis) { 0.0 } else { 1.0 };
         let mass = if body.mass.is_finite() { body.mass } else { 0.0 };
         let of = MotionAlongAxes::of(mass, body.state.velocity, DVec3::new(free(0), free(1), free(2)));
-        MotionAlongAxes {
-            count: count * of.count,
-            velocity: count * of.velocity,
-            speed: count * of.speed,
-            ..of
-        }
+        MotionAlongAxes { count: count * of.count, velocity: count * of.velocity, ..of }
     };
     if let Some(motion) = rigid(resources, id, of_rigid) {
         return Ok(motion);

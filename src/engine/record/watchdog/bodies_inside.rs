@@ -8,12 +8,15 @@
 //! to the reference configuration by the deformation gradient of the nearest particle, and compared with the
 //! shape there. As bodies may have been cut or torn, particles of the body also have to surround the place.
 
+use std::collections::BTreeMap;
+
 use glam::DVec3;
 
 use super::particles_in::{bounds, holds, particles_in};
-use crate::neighbors::{Cloud, NeighborList, Periodic, SupportRadii};
+use crate::neighbors::{Cloud, NeighborList, NeighborSearch, Periodic};
 use crate::plugin::{BodyKind, BodyPlan, SimBuilder};
 use crate::rigid::{RigidBodies, RigidBody};
+use crate::scene::Contact;
 use crate::schedule::{Intruders, Step, StepError};
 use crate::shapes::{Aabb, Region};
 use crate::world::{BodyId, DeformationGradient, ParticleId, Position, ReferencePosition, Removed};
@@ -35,6 +38,8 @@ pub(super) struct BodiesInside {
     /// Shapes in the reference configuration of the deformable bodies among them.
     solids: Vec<(BodyId, Box<dyn Region>)>,
     spacings: Vec<f64>,
+    /// Whether each body ends somewhere: half-spaces do not.
+    is_bounded: Vec<bool>,
     periodic: Periodic,
     /// Pairs that the user has been warned of.
     pub told: Vec<bool>,
@@ -43,23 +48,35 @@ pub(super) struct BodiesInside {
 impl BodiesInside {
     /// All pairs of solids, rigid bodies and walls that have a contact.
     pub fn new(sim: &SimBuilder<'_>) -> Self {
-        let touching = sim.touching_pairs();
-        let bodies = || sim.bodies().iter().filter(|body| body.kind != BodyKind::Fluid);
-        let is_solid = |body: &&BodyPlan| body.kind == BodyKind::Solid;
-        let all = bodies().flat_map(|a| bodies().filter(|b| a.id.0 < b.id.0).map(move |b| (a, b)));
-        let all = all.filter(|(a, b)| touching.has(&a.name, &b.name));
+        let named: BTreeMap<&str, &BodyPlan> =
+            sim.bodies().iter().map(|body| (&body.name[..], body)).collect();
+        let is_solid = |body: &BodyPlan| body.kind == BodyKind::Solid;
         // The distance from a rigid body is the exact one.
-        let solid_first = |(a, b)| if is_solid(&a) || !is_solid(&b) { [a, b] } else { [b, a] };
-        let pairs: Vec<[BodyId; 2]> = all.map(|pair| solid_first(pair).map(|body| body.id)).collect();
-        let shape = |body: &BodyPlan| {
-            let shape = &sim.scene().bodies[body.id.0].shape;
-            Some((body.id, shape.region(sim.dimension(), sim.folder(), "shape").ok()?))
+        let solid_first = |a: &BodyPlan, b: &BodyPlan| {
+            let [a, b] = if a.id.0 < b.id.0 { [a, b] } else { [b, a] };
+            let [a, b] = if is_solid(a) || !is_solid(b) { [a, b] } else { [b, a] };
+            [a.id, b.id]
         };
-        let is_paired = |body: &&BodyPlan| pairs.iter().flatten().any(|id| *id == body.id);
-        let solids = bodies().filter(is_solid).filter(is_paired);
+        let of = |(_, contact): (usize, Contact)| {
+            let body = |name: &str| named.get(name).filter(|body| body.kind != BodyKind::Fluid).copied();
+            let (a, b) = (body(&contact.between.0)?, body(&contact.between.1)?);
+            (a.id != b.id).then(|| solid_first(a, b))
+        };
+        let mut pairs: Vec<[BodyId; 2]> = sim.contact_pairs().filter_map(of).collect();
+        pairs.sort_unstable();
+        pairs.dedup();
+        let shape = |id: &BodyId| {
+            let shape = &sim.scene().bodies[id.0].shape;
+            Some((*id, shape.region(sim.dimension(), sim.folder(), "shape").ok()?))
+        };
+        let mut solids: Vec<BodyId> =
+            pairs.iter().flatten().copied().filter(|id| is_solid(sim.body(*id))).collect();
+        solids.sort_unstable();
+        solids.dedup();
         Self {
-            solids: solids.filter_map(shape).collect(),
+            solids: solids.iter().filter_map(shape).collect(),
             spacings: sim.bodies().iter().map(|body| body.spacing).collect(),
+            is_bounded: sim.bodies().iter().map(|body| body.bounds.is_bounded()).collect(),
             periodic: sim.periodic(),
             told: vec![false; pairs.len()],
             pairs,
@@ -71,10 +88,15 @@ impl BodiesInside {
     /// # Errors
     /// A column is missing.
     pub fn look(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let boxes = self.boxes(step)?;
         for number in 0..self.pairs.len() {
             let [a, b] = self.pairs[number];
+            let are_apart = boxes[a.0]
+                .zip(boxes[b.0])
+                .is_some_and(|(a, b)| (a.max.cmplt(b.min) | b.max.cmplt(a.min)).any());
             for pair in [[a, b], [b, a]] {
-                if !self.told[number]
+                if !are_apart
+                    && !self.told[number]
                     && let Some(found) = self.inside(step, pair)?
                 {
                     self.told[number] = true;
@@ -83,6 +105,20 @@ impl BodiesInside {
             }
         }
         Ok(())
+    }
+
+    /// The box around each body of a pair; none where a body has no end, or its images count as well.
+    fn boxes(&self, step: &Step<'_>) -> Result<Vec<Option<Aabb>>, StepError> {
+        let mut boxes = vec![None; self.spacings.len()];
+        if self.periodic.any() {
+            return Ok(boxes);
+        }
+        for &body in self.pairs.iter().flatten().filter(|body| self.is_bounded[body.0]) {
+            if boxes[body.0].is_none() {
+                boxes[body.0] = Some(bounds(step, body)?.grown(self.spacings[body.0]));
+            }
+        }
+        Ok(boxes)
     }
 
     fn warn(&self, step: &mut Step<'_>, found: &Intruders, pair: [BodyId; 2]) -> Result<(), StepError> {
@@ -113,9 +149,11 @@ impl BodiesInside {
         }
         // A wall has particles alone, which a deformable body may have inside.
         let Some(bodies) = step.resources.try_get::<RigidBodies>() else { return Ok(None) };
-        let Some(tool) = bodies.iter().find(|tool| tool.id == other && !tool.state.gone) else {
+        let Ok(at) = bodies.binary_search_by_key(&other, |tool| tool.id) else { return Ok(None) };
+        let tool = &bodies[at];
+        if tool.state.gone {
             return Ok(None);
-        };
+        }
         in_rigid(step, body, tool, DEPTH * self.spacings[body.0], &self.periodic)
     }
 }
@@ -169,26 +207,30 @@ impl InSolid<'_> {
         let open = |bounds: Aabb| (!periodic.any()).then_some(bounds);
         // What is inside lies between its particles.
         let around = open(bounds(step, solid)?);
-        let (rows, mut positions) = particles_in(step, body, around.as_ref())?;
+        let (rows, positions) = particles_in(step, body, around.as_ref())?;
         if rows.is_empty() {
             return Ok(None);
         }
-        let range = RANGE * spacing;
+        // No image counts twice.
+        let periods = periodic.lengths().to_array().into_iter().filter(|length| *length > 0.0);
+        let range = periods.fold(RANGE * spacing, |range, length| range.min(0.49 * length));
         let near = open(Aabb::around(positions.iter().copied()).grown(range));
         let (own_rows, own) = particles_in(step, solid, near.as_ref())?;
-        positions.extend(own);
-        let cloud = Cloud { positions: &positions, support: SupportRadii::Uniform(range) };
-        let Ok(list) = NeighborList::reference(cloud, periodic) else { return Ok(None) };
+        let [targets, sources] = [&positions, &own].map(|positions| Cloud::uniform(positions, range));
+        let mut list = NeighborList::default();
+        if NeighborSearch::default().between(targets, sources, 0.0, periodic, &mut list).is_err() {
+            return Ok(None);
+        }
         let view = step.world.body_view(solid).0;
         let (reference, gradient) = (view.read::<ReferencePosition>()?, view.read::<DeformationGradient>()?);
         let mut found = None;
         let first = step.world.body_view(body).1.start;
         for (i, row) in rows.iter().enumerate() {
-            let others = list.row(i).iter().map(|&j| j as usize).filter(|j| *j >= rows.len());
-            let offset = |j: usize| periodic.minimal_image(positions[j] - positions[i]);
+            let others = list.row(i).iter().map(|&j| j as usize);
+            let offset = |j: usize| periodic.minimal_image(own[j] - positions[i]);
             let distances = others.clone().map(|j| (offset(j).length(), j));
             let Some((_, nearest)) = distances.min_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
-            let own_row = own_rows[nearest - rows.len()];
+            let own_row = own_rows[nearest];
             let back = gradient[own_row].0.inverse();
             let away = back * offset(nearest);
             let below = -region.distance(reference[own_row].0 - away);

@@ -76,8 +76,9 @@ fn largest(ledger: &Ledger, world: &World) -> (String, String) {
     let mut found = (String::new(), String::new());
     for account in ledger.accounts().iter().filter(|account| account.kind == AccountKind::Stored) {
         for (k, body) in world.bodies().iter().enumerate() {
-            if account.of(BodyId(k)) > most {
-                most = account.of(BodyId(k));
+            let energy = account.of(BodyId(k)) - ledger.drift_of(account, BodyId(k));
+            if energy > most {
+                most = energy;
                 found = (account.name.clone(), body.name.clone());
             }
         }

@@ -1,4 +1,4 @@
-//! The lowest place of the boundaries of a flow: what has fallen below it falls on.
+//! The lowest place of the walls of a flow: what has fallen below it falls on.
 
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
@@ -14,11 +14,11 @@ pub fn open_gravity(sim: &SimBuilder<'_>) -> DVec3 {
     DVec3::select(is_open, sim.gravity(), DVec3::ZERO)
 }
 
-/// The level of the lowest particle of all boundaries.
+/// The level of the lowest particle of all walls. Bodies that the flow moves may fall themselves.
 #[derive(Clone, Copy, Debug)]
 pub struct Floor {
     down: DVec3,
-    /// Depth along that direction, m; infinite without gravity and without boundaries.
+    /// Depth along that direction, m; infinite without gravity and without walls.
     depth: f64,
 }
 
@@ -40,19 +40,20 @@ impl BlockSum for LargestDepth {
 }
 
 impl Floor {
-    /// That of the walls and bodies among the groups, under this gravity, m/s2.
+    /// That of the walls among the groups, under this gravity, m/s2.
     pub fn of(gravity: DVec3, groups: &[Group], records: &[FlowParticle]) -> Self {
         let down = gravity.normalize_or_zero();
-        let boundaries = groups.iter().filter(|group| group.fluid().is_none());
+        let walls = groups.iter().filter(|group| group.is_wall());
         let of = |group: &Group| {
             let deepest =
                 sum_over_own_blocks(&records[group.cloud.clone()], &|_, records: &[FlowParticle]| {
-                    let depths = records.iter().map(|record| record.position().dot(down));
+                    let there = records.iter().filter(|record| record.volume() > 0.0);
+                    let depths = there.map(|record| record.position().dot(down));
                     LargestDepth(depths.fold(f64::NEG_INFINITY, f64::max))
                 });
             deepest.0
         };
-        let depth = boundaries.map(of).fold(f64::NEG_INFINITY, f64::max);
+        let depth = walls.map(of).fold(f64::NEG_INFINITY, f64::max);
         let is_there = down != DVec3::ZERO && depth > f64::NEG_INFINITY;
         Self { down, depth: if is_there { depth } else { f64::INFINITY } }
     }

@@ -1,5 +1,7 @@
 //! Scenes and walls that move: the energies that are compared, and the warnings, are those at rest.
 
+use glam::DVec3;
+
 use super::simulation;
 use crate::simulation::Simulation;
 
@@ -90,4 +92,46 @@ fn a_body_in_a_tank_that_turns_is_not_in_its_wall() {
             conditions: [Displacement(on: Select(body: "drum"), value: {turn})], time: (end: 0.15))"#
     ));
     assert!(!sim.warnings().iter().any(|text| text.contains("is inside of")), "{:?}", sim.warnings());
+}
+
+#[test]
+fn a_body_that_an_arm_turns_into_is_in_it() {
+    let turn = r#"("x*(cos(10*t) - 1) - y*sin(10*t)", "x*sin(10*t) + y*(cos(10*t) - 1)")"#;
+    let sim = ended(&format!(
+        r#"(dimension: Two, materials: {{"water": Fluid(density: 1000.0, sound_speed: 20.0), "block": NeoHookean(density: 2000.0, young: 1.0e6, poisson: 0.3)}},
+            bodies: [
+                (name: "water", material: "water", shape: Box(min: (1, 1), max: (1.2, 1.2)), spacing: 0.02, formulation: Fluid()),
+                (name: "block", material: "block", shape: Sphere(center: (0, 0.3), radius: 0.03), spacing: 0.01, formulation: Rigid()),
+                (name: "arm", material: "wall", shape: Box(min: (0.1, -0.06), max: (0.5, 0.06)), spacing: 0.02, formulation: Wall(slip: Free)),
+            ],
+            conditions: [Displacement(on: Select(body: "arm"), value: {turn})], time: (end: 0.157))"#
+    ));
+    assert!(sim.warnings().iter().any(|text| text.contains("is inside of `arm`")), "{:?}", sim.warnings());
+}
+
+/// Parts that are driven from the first step on do not set the frame of what is at rest.
+#[test]
+fn a_scene_of_which_parts_move_is_at_rest() {
+    let frame = |wall: &str, conditions: &str| {
+        let mut sim = simulation(&format!(
+            r#"(dimension: Two, domain: (min: (0, -1), max: (0.4, 1), periodic: [X]),
+                materials: {{"water": Fluid(density: 1000.0, sound_speed: 20.0, viscosity: 1.0)}},
+                bodies: [
+                    (name: "water", material: "water", shape: Box(min: (0, 0), max: (0.4, 0.2)), spacing: 0.02, formulation: Fluid(pressure: 100)),
+                    (name: "bed", material: "wall", shape: Box(min: (0, -0.08), max: (0.4, 0)), spacing: 0.02, formulation: Wall(slip: No)),
+                    {wall}
+                ],
+                conditions: [{conditions}], time: (end: 1.0))"#
+        ));
+        sim.run(|sim| sim.clock().step < 1).expect("a step");
+        sim.ledger().frame()
+    };
+    let lid = r#"(name: "lid", material: "wall", shape: Box(min: (0, 0.2), max: (0.4, 0.28)), spacing: 0.02, formulation: Wall(slip: No)),"#;
+    let along = |body: &str, speed: &str| {
+        format!(r#"Velocity(on: Select(body: "{body}"), value: ("{speed}", 0.0)),"#)
+    };
+    assert_eq!(frame("", &along("bed", "0.05*cos(5*t)")), DVec3::ZERO);
+    assert_eq!(frame(lid, &(along("bed", "-0.1") + &along("lid", "0.1"))), DVec3::ZERO);
+    let all = along("bed", "0.3") + r#"InitialVelocity(on: Select(body: "water"), value: (0.3, 0.0)),"#;
+    assert!(frame("", &all).distance(0.3 * DVec3::X) < 1e-12);
 }

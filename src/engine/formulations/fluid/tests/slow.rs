@@ -35,14 +35,14 @@ fn a_flow_that_ends_before_its_pressure_has_spread_is_warned_of() {
     assert!(is_told && speed > 1.5 * settled, "{speed} m/s, {settled} m/s with pressure that has spread");
 }
 
-/// A cylinder that turns in a ring of oil twice as wide, if `motion` moves it so: what friction has
-/// dissipated after `end`, s, J, and whether the run says that torques are wrong.
-fn turned_cylinder(sound: f64, motion: &str, end: f64) -> (f64, bool) {
+/// A cylinder of that formulation that turns in a ring of oil twice as wide, if `motion` moves it so: what
+/// friction has dissipated after `end`, s, J, and whether the run says that torques are wrong.
+fn turned_cylinder(sound: f64, formulation: &str, motion: &str, end: f64) -> (f64, bool) {
     let mut sim = simulation(&format!(
         r#"(dimension: Two, materials: {{"oil": Fluid(density: 1000.0, sound_speed: {sound}, viscosity: 0.2), "wood": NeoHookean(density: 500.0, young: 1e6, poisson: 0.3)}},
             bodies: [
                 (name: "oil", material: "oil", shape: Ring(center: (0, 0), inner: 0.1, outer: 0.2), spacing: 0.02, lattice: Concentric, formulation: Fluid(pressure: "0")),
-                (name: "rotor", material: "wood", shape: Ring(center: (0, 0), inner: 0.02, outer: 0.1), spacing: 0.02, lattice: Concentric, formulation: Rigid()),
+                (name: "rotor", material: "wood", shape: Ring(center: (0, 0), inner: 0.02, outer: 0.1), spacing: 0.02, lattice: Concentric, formulation: {formulation}),
                 (name: "ring", material: "wall", shape: Ring(center: (0, 0), inner: 0.2, outer: 0.28), spacing: 0.02, lattice: Concentric,
                  formulation: Wall(slip: No, suction: true)),
             ],
@@ -58,15 +58,19 @@ const TURNS: &str = r#"RotationRate(on: Select(body: "rotor"), rate: 0.05)"#;
 /// Friction has spin below 670 m/s.
 #[test]
 fn torques_of_friction_without_spin_are_warned_of() {
-    let warns = |sound: f64, motion: &str| turned_cylinder(sound, motion, 0.04).1;
+    let warns = |sound: f64, motion: &str| turned_cylinder(sound, "Rigid()", motion, 0.04).1;
     let moves = r#"Velocity(on: Select(body: "rotor"), value: ("0.005", "0.0"))"#;
     assert!(!warns(100.0, TURNS));
     assert!(warns(1000.0, TURNS));
     assert!(!warns(1000.0, moves));
+    let wall = r#"Displacement(on: Select(body: "rotor"), value: ("x*(cos(0.05*t) - 1) - y*sin(0.05*t)", "x*sin(0.05*t) + y*(cos(0.05*t) - 1)"))"#;
+    let warns = |sound: f64| turned_cylinder(sound, "Wall(slip: No)", wall, 0.04).1;
+    assert!(!warns(100.0));
+    assert!(warns(1000.0));
 }
 
 #[test]
 fn friction_beside_what_turns_does_not_depend_on_the_speed_of_sound() {
-    let [slow, fast] = [20.0, 140.0].map(|sound| turned_cylinder(sound, TURNS, 0.2).0);
+    let [slow, fast] = [20.0, 140.0].map(|sound| turned_cylinder(sound, "Rigid()", TURNS, 0.2).0);
     assert!((fast / slow - 1.0).abs() < 0.02, "{fast} J, {slow} J with a slower sound");
 }

@@ -2,7 +2,8 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::linalg::dyad;
+use crate::linalg::{Sym3, dyad, extreme_eigenvalues};
+use crate::notation::{place, quantity};
 use crate::plugin::{BodyKind, SimBuilder};
 use crate::scene::Dimension;
 use crate::schedule::{Step, StepError};
@@ -14,6 +15,9 @@ const DEPTH: f64 = 0.25;
 /// Distance of the nearest particle of a wall beyond which a particle is outside of it, over the spacing of
 /// the wall; the middle of a cube is 0.87 away.
 const NEAREST: f64 = 0.9;
+/// Root mean square distance of the particles of a wall from a line or plane, over their spacing, below which
+/// they are on it.
+const FLAT: f64 = 0.1;
 
 /// Checks for particles of bodies inside of walls.
 pub struct PassingWalls {
@@ -32,7 +36,8 @@ struct BodyAndWall {
     is_plane: bool,
 }
 
-/// The affine map that fits the motion of a wall best, back to where its shape was at the start.
+/// The affine map that fits the motion of a wall best, back to where its shape was at the start; a shift
+/// alone where its particles are on a line, or in space in a plane.
 struct WallMotion {
     map: DMat3,
     /// Mean positions now and at the start, m.
@@ -41,22 +46,32 @@ struct WallMotion {
 }
 
 impl WallMotion {
-    /// Of the particles at these places now and at the start.
-    fn of(places: impl Iterator<Item = (DVec3, DVec3)> + Clone, is_plane: bool) -> Option<Self> {
+    /// Of particles of this spacing, m, at these places now and at the start; none if there are none.
+    fn of(
+        places: impl Iterator<Item = (DVec3, DVec3)> + Clone,
+        spacing: f64,
+        is_plane: bool,
+    ) -> Option<Self> {
         let count = places.clone().count() as f64;
+        if count == 0.0 {
+            return None;
+        }
         let sums =
             places.clone().fold([DVec3::ZERO; 2], |sums, (now, start)| [sums[0] + now, sums[1] + start]);
         let [now, start] = sums.map(|sum| sum / count);
-        let (mut moment, mut map) = (DMat3::ZERO, DMat3::ZERO);
+        let (mut moment, mut map) = (Sym3::ZERO, DMat3::ZERO);
         for (x, home) in places {
-            moment += dyad(x - now, x - now);
+            moment += Sym3::dyad(x - now);
             map += dyad(home - start, x - now);
         }
+        let least = count * (FLAT * spacing).powi(2);
         if is_plane {
-            moment.z_axis.z = 1.0;
-            map.z_axis.z = 1.0;
+            // Along z nothing moves.
+            (moment.zz, map.z_axis.z) = (least, least);
         }
-        (moment.determinant() > 0.0).then(|| Self { map: map * moment.inverse(), now, start })
+        let is_flat = extreme_eigenvalues(&moment).smallest < (1.0 - 1e-6) * least;
+        let map = if is_flat { DMat3::IDENTITY } else { map * moment.inverse().to_matrix() };
+        Some(Self { map, now, start })
     }
 
     fn back(&self, x: DVec3) -> DVec3 {
@@ -87,32 +102,41 @@ impl PassingWalls {
     /// Checks all pairs. Where parts of a wall move against each other no map fits, so that a particle of the
     /// wall has to be near.
     pub fn look(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        // Of the wall of the pair before: walls come one after the other.
+        let mut fitted: Option<(BodyId, Option<WallMotion>)> = None;
         for (pair, told) in self.pairs.iter().zip(&mut self.told).filter(|(_, told)| !**told) {
             let (view, rows) = step.world.body_view(pair.wall);
             let (x, reference) = (view.read::<Position>()?, view.read::<ReferencePosition>()?);
             let gone = view.read::<Removed>()?;
             let wall = rows.filter(|row| gone[*row] == Removed::NO).map(|row| (x[row].0, reference[row].0));
-            let Some(motion) = WallMotion::of(wall.clone(), pair.is_plane) else { continue };
+            let (_, motion) = match fitted.take().filter(|(wall, _)| *wall == pair.wall) {
+                Some(known) => fitted.insert(known),
+                None => {
+                    let motion = WallMotion::of(wall.clone(), pair.spacings[1], pair.is_plane);
+                    fitted.insert((pair.wall, motion))
+                }
+            };
+            let Some(motion) = motion else { continue };
             let (view, rows) = step.world.body_view(pair.body);
             let (position, removed) = (view.read::<Position>()?, view.read::<Removed>()?);
             let [depth, nearest] = [DEPTH * pair.spacings[0], NEAREST * pair.spacings[1]];
             let is_inside = |row: &usize| {
-                let place = position[*row].0;
+                let at = position[*row].0;
                 removed[*row] == Removed::NO
-                    && pair.region.distance(motion.back(place)) < -depth
-                    && wall.clone().any(|(x, _)| x.distance(place) < nearest)
+                    && pair.region.distance(motion.back(at)) < -depth
+                    && wall.clone().any(|(x, _)| x.distance(at) < nearest)
             };
             let Some(row) = rows.clone().find(is_inside) else { continue };
             *told = true;
             let name = |body| &step.world.body(body).name;
             step.warnings.push(format!(
-                "particle {} of `{1}` is inside of `{2}`, at {3} and {4:.6e} s, and no contact holds the two apart: add \
+                "particle {} of `{1}` is inside of `{2}`, at {3} and {4}, and no contact holds the two apart: add \
                  `contacts: [Contact(between: (\"{1}\", \"{2}\"), law: Penalty())]`",
                 view.read::<ParticleId>()?[row].0,
                 name(pair.body),
                 name(pair.wall),
-                position[row].0,
-                step.clock.time
+                place(position[row].0),
+                quantity(step.clock.time, "s")
             ));
         }
         Ok(())
