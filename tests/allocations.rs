@@ -54,7 +54,8 @@ fn counts_of(source: impl FnOnce() -> Source, threads: usize, steps: usize) -> V
     let source = source();
     pool.install(|| {
         let mut sim = simulation(&source);
-        sim.run(|sim| sim.clock().step < 50).expect("a run");
+        // The first frame is among them, in which what looks at frames gets its memory.
+        sim.run(|sim| sim.clock().step < 60).expect("a run");
         let mut counts = Vec::with_capacity(steps);
         for _ in 0..steps {
             let before = COUNT.load(Ordering::Relaxed);

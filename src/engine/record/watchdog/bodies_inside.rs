@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
-use super::particles_in::{bounds, holds, particles_in};
+use super::particles_in::{ParticlesIn, bounds, holds};
 use crate::neighbors::{Cloud, NeighborList, NeighborSearch, Periodic};
 use crate::plugin::{BodyKind, BodyPlan, SimBuilder};
 use crate::rigid::{RigidBodies, RigidBody};
@@ -41,8 +41,20 @@ pub(super) struct BodiesInside {
     /// Whether each body ends somewhere: half-spaces do not.
     is_bounded: Vec<bool>,
     periodic: Periodic,
+    /// The box around each body of a pair; none where a body has no end, or its images count as well.
+    boxes: Vec<Option<Aabb>>,
+    near: Near,
     /// Pairs that the user has been warned of.
     pub told: Vec<bool>,
+}
+
+/// Particles of two bodies near each other: of one the particles, and which of the other are around them.
+#[derive(Default)]
+struct Near {
+    particles: ParticlesIn,
+    others: ParticlesIn,
+    search: NeighborSearch,
+    around: NeighborList,
 }
 
 impl BodiesInside {
@@ -78,6 +90,8 @@ impl BodiesInside {
             spacings: sim.bodies().iter().map(|body| body.spacing).collect(),
             is_bounded: sim.bodies().iter().map(|body| body.bounds.is_bounded()).collect(),
             periodic: sim.periodic(),
+            boxes: vec![None; sim.bodies().len()],
+            near: Near::default(),
             told: vec![false; pairs.len()],
             pairs,
         }
@@ -88,11 +102,11 @@ impl BodiesInside {
     /// # Errors
     /// A column is missing.
     pub fn look(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
-        let boxes = self.boxes(step)?;
+        self.find_boxes(step)?;
         for number in 0..self.pairs.len() {
             let [a, b] = self.pairs[number];
-            let are_apart = boxes[a.0]
-                .zip(boxes[b.0])
+            let are_apart = self.boxes[a.0]
+                .zip(self.boxes[b.0])
                 .is_some_and(|(a, b)| (a.max.cmplt(b.min) | b.max.cmplt(a.min)).any());
             for pair in [[a, b], [b, a]] {
                 if !are_apart
@@ -107,18 +121,18 @@ impl BodiesInside {
         Ok(())
     }
 
-    /// The box around each body of a pair; none where a body has no end, or its images count as well.
-    fn boxes(&self, step: &Step<'_>) -> Result<Vec<Option<Aabb>>, StepError> {
-        let mut boxes = vec![None; self.spacings.len()];
-        if self.periodic.any() {
-            return Ok(boxes);
+    fn find_boxes(&mut self, step: &Step<'_>) -> Result<(), StepError> {
+        let Self { pairs, spacings, is_bounded, boxes, periodic, .. } = self;
+        boxes.fill(None);
+        if periodic.any() {
+            return Ok(());
         }
-        for &body in self.pairs.iter().flatten().filter(|body| self.is_bounded[body.0]) {
+        for &body in pairs.iter().flatten().filter(|body| is_bounded[body.0]) {
             if boxes[body.0].is_none() {
-                boxes[body.0] = Some(bounds(step, body)?.grown(self.spacings[body.0]));
+                boxes[body.0] = Some(bounds(step, body)?.grown(spacings[body.0]));
             }
         }
-        Ok(boxes)
+        Ok(())
     }
 
     fn warn(&self, step: &mut Step<'_>, found: &Intruders, pair: [BodyId; 2]) -> Result<(), StepError> {
@@ -141,11 +155,15 @@ impl BodiesInside {
     }
 
     /// The particles of the first body inside of the second.
-    fn inside(&self, step: &Step<'_>, [body, other]: [BodyId; 2]) -> Result<Option<Intruders>, StepError> {
+    fn inside(
+        &mut self,
+        step: &Step<'_>,
+        [body, other]: [BodyId; 2],
+    ) -> Result<Option<Intruders>, StepError> {
         if let Some((_, region)) = self.solids.iter().find(|(solid, _)| *solid == other) {
             let spacing = self.spacings[other.0];
             return InSolid { step, solid: other, region: &**region, spacing, periodic: &self.periodic }
-                .particles_of(body);
+                .particles_of(body, &mut self.near);
         }
         // A wall has particles alone, which a deformable body may have inside.
         let Some(bodies) = step.resources.try_get::<RigidBodies>() else { return Ok(None) };
@@ -202,40 +220,39 @@ struct InSolid<'a> {
 
 impl InSolid<'_> {
     /// The particles of another body in it.
-    fn particles_of(&self, body: BodyId) -> Result<Option<Intruders>, StepError> {
+    fn particles_of(&self, body: BodyId, near: &mut Near) -> Result<Option<Intruders>, StepError> {
         let Self { step, solid, region, spacing, periodic } = *self;
+        let Near { particles, others, search, around } = near;
         let open = |bounds: Aabb| (!periodic.any()).then_some(bounds);
         // What is inside lies between its particles.
-        let around = open(bounds(step, solid)?);
-        let (rows, positions) = particles_in(step, body, around.as_ref())?;
-        if rows.is_empty() {
+        particles.find(step, body, open(bounds(step, solid)?).as_ref())?;
+        if particles.rows.is_empty() {
             return Ok(None);
         }
         // No image counts twice.
         let periods = periodic.lengths().to_array().into_iter().filter(|length| *length > 0.0);
         let range = periods.fold(RANGE * spacing, |range, length| range.min(0.49 * length));
-        let near = open(Aabb::around(positions.iter().copied()).grown(range));
-        let (own_rows, own) = particles_in(step, solid, near.as_ref())?;
-        let [targets, sources] = [&positions, &own].map(|positions| Cloud::uniform(positions, range));
-        let mut list = NeighborList::default();
-        if NeighborSearch::default().between(targets, sources, 0.0, periodic, &mut list).is_err() {
+        let reach = Aabb::around(particles.places.iter().copied()).grown(range);
+        others.find(step, solid, open(reach).as_ref())?;
+        let [targets, sources] = [&*particles, &*others].map(|of| Cloud::uniform(&of.places, range));
+        if search.between(targets, sources, 0.0, periodic, around).is_err() {
             return Ok(None);
         }
         let view = step.world.body_view(solid).0;
         let (reference, gradient) = (view.read::<ReferencePosition>()?, view.read::<DeformationGradient>()?);
         let mut found = None;
         let first = step.world.body_view(body).1.start;
-        for (i, row) in rows.iter().enumerate() {
-            let others = list.row(i).iter().map(|&j| j as usize);
-            let offset = |j: usize| periodic.minimal_image(own[j] - positions[i]);
-            let distances = others.clone().map(|j| (offset(j).length(), j));
+        for (i, row) in particles.rows.iter().enumerate() {
+            let near = around.row(i).iter().map(|&j| j as usize);
+            let offset = |j: usize| periodic.minimal_image(others.places[j] - particles.places[i]);
+            let distances = near.clone().map(|j| (offset(j).length(), j));
             let Some((_, nearest)) = distances.min_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
-            let own_row = own_rows[nearest];
+            let own_row = others.rows[nearest];
             let back = gradient[own_row].0.inverse();
             let away = back * offset(nearest);
             let below = -region.distance(reference[own_row].0 - away);
             let is_among = away.length() < NEAREST * spacing && below > DEPTH * spacing;
-            if is_among && is_enclosed(others.map(|j| back * offset(j)), range) {
+            if is_among && is_enclosed(near.map(|j| back * offset(j)), range) {
                 Intruders::add(&mut found, row - first, below);
             }
         }

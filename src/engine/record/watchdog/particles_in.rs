@@ -6,17 +6,28 @@ use crate::schedule::{Step, StepError};
 use crate::shapes::Aabb;
 use crate::world::{BodyId, Position, Removed};
 
-/// Rows and places, m, of the particles of a body, those in a box alone.
-pub(super) fn particles_in(
-    step: &Step<'_>,
-    body: BodyId,
-    within: Option<&Aabb>,
-) -> Result<(Vec<usize>, Vec<DVec3>), StepError> {
-    let (view, rows) = step.world.body_view(body);
-    let (position, removed) = (view.read::<Position>()?, view.read::<Removed>()?);
-    let is_in = |x: DVec3| within.is_none_or(|within| holds(within, x));
-    let is_there = |row: &usize| removed[*row] == Removed::NO && is_in(position[*row].0);
-    Ok(rows.filter(is_there).map(|row| (row, position[row].0)).unzip())
+/// Particles of a body, with memory that is kept.
+#[derive(Default)]
+pub(super) struct ParticlesIn {
+    /// Their rows.
+    pub rows: Vec<usize>,
+    /// Where they are, m.
+    pub places: Vec<DVec3>,
+}
+
+impl ParticlesIn {
+    /// Makes it the particles of a body, those in a box alone.
+    pub fn find(&mut self, step: &Step<'_>, body: BodyId, within: Option<&Aabb>) -> Result<(), StepError> {
+        let (view, rows) = step.world.body_view(body);
+        let (position, removed) = (view.read::<Position>()?, view.read::<Removed>()?);
+        let is_in = |x: DVec3| within.is_none_or(|within| holds(within, x));
+        let is_there = |row: &usize| removed[*row] == Removed::NO && is_in(position[*row].0);
+        self.rows.clear();
+        self.rows.extend(rows.filter(is_there));
+        self.places.clear();
+        self.places.extend(self.rows.iter().map(|row| position[*row].0));
+        Ok(())
+    }
 }
 
 /// Whether a point is in a box.

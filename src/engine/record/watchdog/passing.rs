@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::particles_in::{bounds, particles_in};
+use super::particles_in::{ParticlesIn, bounds};
 use crate::neighbors::{Cloud, NeighborList, Periodic, SupportRadii};
 use crate::notation::{place, quantity};
 use crate::plugin::{BodyKind, BodyPlan, SimBuilder};
@@ -67,9 +67,12 @@ fn overlap(step: &Step<'_>, bodies: [BodyId; 2], distance: f64) -> Result<Option
     if !common.min.cmple(common.max).all() {
         return Ok(None);
     }
-    let (_, mut positions) = particles_in(step, bodies[0], Some(&common))?;
+    let mut near = ParticlesIn::default();
+    near.find(step, bodies[0], Some(&common))?;
+    let mut positions = near.places.clone();
     let firsts = positions.len();
-    positions.extend(particles_in(step, bodies[1], Some(&common))?.1);
+    near.find(step, bodies[1], Some(&common))?;
+    positions.extend(&near.places);
     let cloud = Cloud { positions: &positions, support: SupportRadii::Uniform(distance) };
     let Ok(list) = NeighborList::reference(cloud, &Periodic::NONE) else { return Ok(None) };
     let meets = |i: &usize| list.row(*i).iter().any(|&j| j as usize >= firsts);
