@@ -43,14 +43,14 @@ pub(super) struct BodiesInside {
     periodic: Periodic,
     /// The box around each body of a pair; none where a body has no end, or its images count as well.
     boxes: Vec<Option<Aabb>>,
-    near: Near,
+    near: NearParticles,
     /// Pairs that the user has been warned of.
     pub told: Vec<bool>,
 }
 
 /// Particles of two bodies near each other: of one the particles, and which of the other are around them.
 #[derive(Default)]
-struct Near {
+struct NearParticles {
     particles: ParticlesIn,
     others: ParticlesIn,
     search: NeighborSearch,
@@ -91,7 +91,7 @@ impl BodiesInside {
             is_bounded: sim.bodies().iter().map(|body| body.bounds.is_bounded()).collect(),
             periodic: sim.periodic(),
             boxes: vec![None; sim.bodies().len()],
-            near: Near::default(),
+            near: NearParticles::default(),
             told: vec![false; pairs.len()],
             pairs,
         }
@@ -220,9 +220,9 @@ struct InSolid<'a> {
 
 impl InSolid<'_> {
     /// The particles of another body in it.
-    fn particles_of(&self, body: BodyId, near: &mut Near) -> Result<Option<Intruders>, StepError> {
+    fn particles_of(&self, body: BodyId, near: &mut NearParticles) -> Result<Option<Intruders>, StepError> {
         let Self { step, solid, region, spacing, periodic } = *self;
-        let Near { particles, others, search, around } = near;
+        let NearParticles { particles, others, search, around } = near;
         let open = |bounds: Aabb| (!periodic.any()).then_some(bounds);
         // What is inside lies between its particles.
         particles.find(step, body, open(bounds(step, solid)?).as_ref())?;
