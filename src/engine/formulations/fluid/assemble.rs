@@ -150,6 +150,7 @@ impl Bodies {
                 suction: parameters.suction,
                 velocity: parameters.surface_velocity.0,
                 moved: false,
+                falls: false,
             };
             self.add(sim.body(*id), Role::Boundary(surface));
         }
@@ -163,10 +164,12 @@ impl Bodies {
         common: &Common,
         sim: &SimBuilder<'_>,
     ) -> Result<(), SetupError> {
-        let role =
-            Role::Boundary(BoundarySurface { no_slip: true, suction, velocity: DVec3::ZERO, moved: true });
+        let velocity = DVec3::ZERO;
         for &id in moved {
             let body = sim.body(id);
+            let falls = body.kind == BodyKind::Rigid && !is_prescribed(body, sim);
+            let role =
+                Role::Boundary(BoundarySurface { no_slip: true, suction, velocity, moved: true, falls });
             let first = self.add(body, role);
             let thickness = Thickness::of(body, common.support, &common.periodic)?;
             if thickness.thin(1).is_some() {
@@ -250,12 +253,13 @@ fn sides(groups: &[Group], sim: &SimBuilder<'_>) -> Vec<GapSide> {
 
 /// Whether a boundary may turn as a whole: a rigid body, or a wall that a condition moves.
 fn may_turn(body: &BodyPlan, sim: &SimBuilder<'_>) -> bool {
+    body.kind == BodyKind::Rigid || body.kind == BodyKind::Boundary && is_prescribed(body, sim)
+}
+
+/// Whether a condition prescribes the motion of any particle of a body.
+fn is_prescribed(body: &BodyPlan, sim: &SimBuilder<'_>) -> bool {
     let rows = (body.phase, body.rows.start as u32)..(body.phase, body.rows.end as u32);
-    match body.kind {
-        BodyKind::Rigid => true,
-        BodyKind::Boundary => sim.prescribed.range(rows).next().is_some(),
-        _ => false,
-    }
+    sim.prescribed.range(rows).next().is_some()
 }
 
 /// Neighbourhoods within the bodies that deform, with spin within those to which fluids stick, and within

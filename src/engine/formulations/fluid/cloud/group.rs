@@ -55,6 +55,8 @@ pub struct BoundarySurface {
     pub velocity: DVec3,
     /// Whether it is that of a body which the fluid moves.
     pub moved: bool,
+    /// Whether it is that of a rigid body which nothing holds.
+    pub falls: bool,
 }
 
 /// The particles of one body.
@@ -90,6 +92,11 @@ impl Group {
     /// Whether it is a boundary that no fluid moves.
     pub fn is_wall(&self) -> bool {
         matches!(&self.role, Role::Boundary(surface) if !surface.moved)
+    }
+
+    /// Whether it is a boundary that does not fall as a whole.
+    pub fn stays(&self) -> bool {
+        matches!(&self.role, Role::Boundary(surface) if !surface.falls)
     }
 
     /// The state of a fluid.

@@ -1,4 +1,4 @@
-//! The lowest place of the walls of a flow: what has fallen below it falls on.
+//! The lowest place of the boundaries of a flow that do not fall: what has fallen below it falls on.
 
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
@@ -14,11 +14,11 @@ pub fn open_gravity(sim: &SimBuilder<'_>) -> DVec3 {
     DVec3::select(is_open, sim.gravity(), DVec3::ZERO)
 }
 
-/// The level of the lowest particle of all walls. Bodies that the flow moves may fall themselves.
+/// The level of the lowest particle of walls, deformable bodies, and rigid bodies that something holds.
 #[derive(Clone, Copy, Debug)]
 pub struct Floor {
     down: DVec3,
-    /// Depth along that direction, m; infinite without gravity and without walls.
+    /// Depth along that direction, m; infinite without gravity and without them.
     depth: f64,
 }
 
@@ -40,10 +40,10 @@ impl BlockSum for LargestDepth {
 }
 
 impl Floor {
-    /// That of the walls among the groups, under this gravity, m/s2.
+    /// That of the boundaries among the groups, under this gravity, m/s2.
     pub fn of(gravity: DVec3, groups: &[Group], records: &[FlowParticle]) -> Self {
         let down = gravity.normalize_or_zero();
-        let walls = groups.iter().filter(|group| group.is_wall());
+        let staying = groups.iter().filter(|group| group.stays());
         let of = |group: &Group| {
             let deepest =
                 sum_over_own_blocks(&records[group.cloud.clone()], &|_, records: &[FlowParticle]| {
@@ -53,7 +53,7 @@ impl Floor {
                 });
             deepest.0
         };
-        let depth = walls.map(of).fold(f64::NEG_INFINITY, f64::max);
+        let depth = staying.map(of).fold(f64::NEG_INFINITY, f64::max);
         let is_there = down != DVec3::ZERO && depth > f64::NEG_INFINITY;
         Self { down, depth: if is_there { depth } else { f64::INFINITY } }
     }

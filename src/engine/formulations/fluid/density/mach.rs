@@ -4,7 +4,7 @@
 //! frames: at rest, that of one of the boundary bodies, or, without boundaries, that of the mean velocity of
 //! the fluids. The frame is the one in which the largest speed of fluids and boundaries is smallest.
 //!
-//! What has fallen past all walls meets nothing that could compress it, and does not count.
+//! What has fallen past all boundaries that stay meets nothing that could compress it, and does not count.
 
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;

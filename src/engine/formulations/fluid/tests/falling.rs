@@ -24,7 +24,7 @@ fn a_drop_that_falls_past_all_walls_is_named_and_falls_on() {
     let heights = column::<Position>(&sim, 0).into_iter().map(|position| position.0.y);
     assert!((heights.sum::<f64>() / 16.0 - 0.1 + way).abs() < 1e-3 * way);
     let of = |part: &str| sim.warnings().iter().filter(|text| text.contains(part)).count();
-    assert_eq!([of("past all walls: 16 of its particles"), of("Mach number")], [1, 0]);
+    assert_eq!([of("past all walls and bodies: 16 of its particles"), of("Mach number")], [1, 0]);
 }
 
 #[test]
@@ -32,4 +32,27 @@ fn what_a_domain_takes_out_is_not_missing() {
     let mut sim = simulation(&drop("domain: (min: (-1, -1), max: (2, 1), outside: Remove),"));
     sim.run(|_| true).expect("a run");
     assert!(!sim.warnings().iter().any(|text| text.contains("past all walls")), "{:?}", sim.warnings());
+}
+
+/// A body that falls itself is no floor.
+#[test]
+fn what_falls_beside_a_free_body_is_named_if_there_is_a_wall() {
+    let is_named = |wall: &str| {
+        let mut sim = simulation(&format!(
+            r#"(dimension: Two, gravity: (0.0, -9.81),
+                materials: {{"water": Fluid(density: 1000.0, sound_speed: 20.0), "wood": NeoHookean(density: 500.0, young: 1.0e6, poisson: 0.3)}},
+                bodies: [
+                    (name: "water", material: "water", shape: Box(min: (0.8, 0), max: (1, 0.2)), spacing: 0.05, formulation: Fluid()),
+                    (name: "ball", material: "wood", shape: Sphere(center: (2, -0.3), radius: 0.1), spacing: 0.05, formulation: Rigid()),
+                    {wall}
+                ],
+                time: (end: 0.4))"#
+        ));
+        sim.run(|_| true).expect("a run");
+        sim.warnings().iter().any(|text| text.contains("past all walls and bodies"))
+    };
+    assert!(!is_named(""));
+    assert!(is_named(
+        r#"(name: "shelf", material: "wall", shape: Box(min: (0, 0), max: (0.4, 0.2)), spacing: 0.05, formulation: Wall())"#
+    ));
 }

@@ -13,7 +13,7 @@ use crate::schedule::{Step, replace_warning};
 /// Growth of the number of particles for which the warning is renewed.
 const GROWTH: f64 = 1.2;
 
-/// Watches what falls past all walls.
+/// Watches what falls past all walls and bodies.
 pub struct FallenWatch {
     /// Acceleration of gravity along the axes that are not periodic, m/s2; zero where a domain takes out what
     /// leaves it.
@@ -44,7 +44,8 @@ impl FallenWatch {
             return;
         }
         self.told = count;
-        let begin = format!("what has left the vessels of {} falls past all walls: ", named(cloud, step));
+        let begin =
+            format!("what has left the vessels of {} falls past all walls and bodies: ", named(cloud, step));
         let text = format!(
             "{begin}{count} of its particles by {}, one of them at {}, which are missing above, and fall on for ever; make the walls higher, or let \
              `domain: (min: ..., max: ..., outside: Remove)` take them out",
