@@ -79,9 +79,11 @@ fn a_tank_that_moves_with_its_water_is_judged_like_one_at_rest() {
     }
 }
 
+/// Displacement of a turn about the origin at 10 rad/s.
+const TURN: &str = r#"("x*(cos(10*t) - 1) - y*sin(10*t)", "x*sin(10*t) + y*(cos(10*t) - 1)")"#;
+
 #[test]
 fn a_body_in_a_tank_that_turns_is_not_in_its_wall() {
-    let turn = r#"("x*(cos(10*t) - 1) - y*sin(10*t)", "x*sin(10*t) + y*(cos(10*t) - 1)")"#;
     let sim = ended(&format!(
         r#"(dimension: Two, materials: {{"water": Fluid(density: 1000.0, sound_speed: 20.0), "block": NeoHookean(density: 2000.0, young: 1.0e6, poisson: 0.3)}},
             bodies: [
@@ -89,14 +91,13 @@ fn a_body_in_a_tank_that_turns_is_not_in_its_wall() {
                 (name: "block", material: "block", shape: Sphere(center: (0, 0), radius: 0.06), spacing: 0.02, lattice: Concentric, formulation: Rigid()),
                 (name: "drum", material: "wall", shape: Ring(center: (0, 0), inner: 0.2, outer: 0.28), spacing: 0.02, lattice: Concentric, formulation: Wall(suction: true)),
             ],
-            conditions: [Displacement(on: Select(body: "drum"), value: {turn})], time: (end: 0.15))"#
+            conditions: [Displacement(on: Select(body: "drum"), value: {TURN})], time: (end: 0.15))"#
     ));
     assert!(!sim.warnings().iter().any(|text| text.contains("is inside of")), "{:?}", sim.warnings());
 }
 
 #[test]
 fn a_body_that_an_arm_turns_into_is_in_it() {
-    let turn = r#"("x*(cos(10*t) - 1) - y*sin(10*t)", "x*sin(10*t) + y*(cos(10*t) - 1)")"#;
     let sim = ended(&format!(
         r#"(dimension: Two, materials: {{"water": Fluid(density: 1000.0, sound_speed: 20.0), "block": NeoHookean(density: 2000.0, young: 1.0e6, poisson: 0.3)}},
             bodies: [
@@ -104,7 +105,7 @@ fn a_body_that_an_arm_turns_into_is_in_it() {
                 (name: "block", material: "block", shape: Sphere(center: (0, 0.3), radius: 0.03), spacing: 0.01, formulation: Rigid()),
                 (name: "arm", material: "wall", shape: Box(min: (0.1, -0.06), max: (0.5, 0.06)), spacing: 0.02, formulation: Wall(slip: Free)),
             ],
-            conditions: [Displacement(on: Select(body: "arm"), value: {turn})], time: (end: 0.157))"#
+            conditions: [Displacement(on: Select(body: "arm"), value: {TURN})], time: (end: 0.157))"#
     ));
     assert!(sim.warnings().iter().any(|text| text.contains("is inside of `arm`")), "{:?}", sim.warnings());
 }

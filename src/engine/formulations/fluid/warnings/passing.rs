@@ -2,7 +2,8 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::linalg::{Sym3, dyad, extreme_eigenvalues};
+use crate::formulations::fluid::cloud::smallest_eigenvalue;
+use crate::linalg::{Sym3, dyad};
 use crate::notation::{place, quantity};
 use crate::plugin::{BodyKind, SimBuilder};
 use crate::scene::Dimension;
@@ -64,12 +65,11 @@ impl WallMotion {
             moment += Sym3::dyad(x - now);
             map += dyad(home - start, x - now);
         }
-        let least = count * (FLAT * spacing).powi(2);
+        let is_flat = smallest_eigenvalue(&moment, is_plane) < count * (FLAT * spacing).powi(2);
         if is_plane {
             // Along z nothing moves.
-            (moment.zz, map.z_axis.z) = (least, least);
+            (moment.zz, map.z_axis.z) = (1.0, 1.0);
         }
-        let is_flat = extreme_eigenvalues(&moment).smallest < (1.0 - 1e-6) * least;
         let map = if is_flat { DMat3::IDENTITY } else { map * moment.inverse().to_matrix() };
         Some(Self { map, now, start })
     }
@@ -140,5 +140,28 @@ impl PassingWalls {
             ));
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// How far places of a wall of so many columns and rows are from where they were, after it has turned by
+    /// 1 rad and its motion has been taken back.
+    fn left(columns: usize, rows: usize) -> f64 {
+        let turn = DMat3::from_rotation_z(1.0);
+        let home = (0..columns * rows).map(|k| DVec3::new((k % columns) as f64, (k / columns) as f64, 0.0));
+        let places: Vec<(DVec3, DVec3)> = home.map(|home| (turn * home + DVec3::X, home)).collect();
+        let motion = WallMotion::of(places.iter().copied(), 1.0, true).expect("particles");
+        places.iter().map(|(now, home)| motion.back(*now).distance(*home)).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn the_turn_of_a_wall_is_known_however_long_and_thin_it_is_and_that_of_a_single_row_is_not() {
+        for (columns, rows) in [(4, 3), (100, 2), (3000, 3)] {
+            assert!(left(columns, rows) < 1e-8 * columns as f64, "{columns} {rows}");
+        }
+        assert!(left(20, 1) > 1.0);
     }
 }
