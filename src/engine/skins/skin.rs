@@ -151,6 +151,20 @@ impl Skin {
         particles
     }
 
+    /// The directed surface that each of `count` particles carries at the start, m2 (m in two dimensions): a
+    /// uniform traction puts on it this much of the surface times the traction.
+    pub fn surfaces_of_particles(&self, count: usize) -> Vec<DVec3> {
+        let mut surfaces = vec![DVec3::ZERO; count];
+        for facet in 0..self.facets.corners.len() as u32 {
+            let (normal, measure) = self.facets.normal_and_measure(facet as usize);
+            let part = normal * (measure / self.facets.axes as f64);
+            for carrier in self.corners_of(facet).iter().flat_map(|&vertex| self.carriers(vertex)) {
+                surfaces[carrier.particle as usize] += carrier.weight * self.map(carrier).vector(part);
+            }
+        }
+        surfaces
+    }
+
     /// The particles that carry a facet; some may come more than once.
     pub fn particles_of(&self, facet: u32) -> impl Iterator<Item = u32> {
         let carriers = self.corners_of(facet).iter().flat_map(|&vertex| self.carriers(vertex));

@@ -81,7 +81,29 @@ fn ring(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     let tolerance = if across < 16 { 0.03 } else { 0.01 };
     let radius = |x: DVec3| x.truncate().length();
     let ring = PressurisedShell { scene, body: "ring", tolerance, exact: of_ring, radius };
-    displacements(&ring, &at_rest(&ring, registry, across)?, across)
+    let simulation = at_rest(&ring, registry, across)?;
+    let mut checks = displacements(&ring, &simulation, across)?;
+    checks.extend(stresses(&simulation, across)?);
+    Ok(checks)
+}
+
+/// Stresses at the surfaces of the ring: across them they are those of the pressure, around them Lame's.
+fn stresses(simulation: &Simulation, across: usize) -> Result<[Check; 4]> {
+    let tolerances = if across < 16 { [0.09, 0.02] } else { [0.03, 0.005] };
+    let [a2, b2] = [INNER * INNER, OUTER * OUTER];
+    let around = |radius: f64| PRESSURE * a2 / (b2 - a2) * (1.0 + b2 / (radius * radius));
+    let check = |name: &str, probe: &str, exact: f64, tolerance: Tolerance| -> Result<Check> {
+        let shown = simulation.measure(probe)?;
+        Ok(Check::new(name, shown[0].1, exact, tolerance, "Pa", "Lame"))
+    };
+    let [bore, rim] = tolerances.map(Tolerance::Relative);
+    let exact = Tolerance::Absolute(1e-3 * PRESSURE);
+    Ok([
+        check("radial stress at the bore", "bore_radial", -PRESSURE, exact)?,
+        check("hoop stress at the bore", "bore_hoop", around(INNER), bore)?.converging(),
+        check("radial stress at the rim", "rim_radial", 0.0, exact)?,
+        check("hoop stress at the rim", "rim_hoop", around(OUTER), rim)?,
+    ])
 }
 
 fn tube(registry: &Registry, across: usize) -> Result<Vec<Check>> {

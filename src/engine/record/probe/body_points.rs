@@ -75,7 +75,7 @@ impl Measure for BodyPoints {
         };
         let mut all: Vec<Vec<f64>> = shares.iter().map(at).collect();
         for (k, values) in all.iter_mut().enumerate() {
-            self.free_surface(k, world, &there, values)?;
+            self.at_surface(k, world, &there, values)?;
         }
         match &self.made {
             PointReduction::Value | PointReduction::Line(_) => Ok(all.concat()),
@@ -99,8 +99,8 @@ impl Measure for BodyPoints {
 }
 
 impl BodyPoints {
-    /// Puts what the field is for the stress of a free surface in the place of its values at a point of one.
-    fn free_surface(
+    /// Puts what the field is for the stress at a surface in the place of its values at a point of one.
+    fn at_surface(
         &self,
         k: usize,
         world: &World,
@@ -108,13 +108,13 @@ impl BodyPoints {
         values: &mut [f64],
     ) -> Result<(), MissingColumn> {
         let Some(surface) = &self.surface else { return Ok(()) };
-        let (Some(of_stress), Some(free)) =
+        let (Some(of_stress), Some(at_surface)) =
             (self.field.of_stress(self.body), surface.stress(k, world, there)?)
         else {
             return Ok(());
         };
-        for (value, free_value) in values.iter_mut().zip(of_stress(&free.stress)) {
-            *value += free.share * (free_value - *value);
+        for (value, there) in values.iter_mut().zip(of_stress(&at_surface.stress)) {
+            *value += at_surface.share * (there - *value);
         }
         Ok(())
     }

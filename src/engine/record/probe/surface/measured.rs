@@ -2,13 +2,14 @@
 
 use glam::DVec3;
 
-use super::points::{FreePoint, SurfacePoints};
+use super::points::{PointBelow, SurfacePoints};
 use super::shifts::shifts;
 use crate::fields::ChosenField;
 use crate::kernels::Kernel;
-use crate::plugin::{BodyPlan, SelectedFacet, SimBuilder};
+use crate::plugin::{BodyPlan, Offer, SelectedFacet, SimBuilder};
 use crate::record::probe::stencil::Stencil;
 use crate::shapes::Facets;
+use crate::skins::Skin;
 use crate::symmetry::{Repeat, maps_of, repeats_of};
 
 /// Distance from a symmetry plane, or the end of a period, over the spacing up to which a facet lies in it.
@@ -98,7 +99,7 @@ impl MeasuredPoints<'_> {
         let mut found = near.into_iter().zip(feet);
         let point = |place: &Option<SurfacePlace>| {
             let (place, (stencil, foot)) = (place.as_ref()?, found.next()?);
-            Some(FreePoint {
+            Some(PointBelow {
                 normal: place.normal,
                 fade: (1.0 - place.depth / (SECOND * body.spacing)).max(0.0),
                 stencil: stencil?.moved(shift, &maps),
@@ -108,7 +109,19 @@ impl MeasuredPoints<'_> {
         let points = places.iter().map(point).collect();
         let elastic = law.elastic();
         let coupling = elastic.lambda / (elastic.lambda + 2.0 * elastic.shear);
-        Some(SurfacePoints { body: body.id, coupling, flows: law.remembers_path(), maps, points })
+        let surfaces = self.surfaces(&repeats);
+        Some(SurfacePoints { body: body.id, coupling, flows: law.remembers_path(), maps, surfaces, points })
+    }
+
+    /// What each particle carries of the surface of the body, m2 (m); none where loads act on particles.
+    fn surfaces(&self, repeats: &[Repeat]) -> Vec<DVec3> {
+        let Self { body, sim, .. } = *self;
+        if !body.offers(Offer::DeformedContact) {
+            return Vec::new();
+        }
+        let shape = &sim.scene().bodies[body.id.0].shape;
+        let skin = Skin::of(body, shape, repeats, sim.dimension(), sim.folder());
+        skin.map(|skin| skin.surfaces_of_particles(body.sites.len())).unwrap_or_default()
     }
 }
 

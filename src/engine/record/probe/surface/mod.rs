@@ -1,4 +1,4 @@
-//! Stress at free surfaces of solids.
+//! Stress at surfaces of solids.
 //!
 //! A particle of the outermost layer has neighbours on one side only. Its deformation gradient is exact where
 //! displacements are linear; where strains vary, the fit is that of a place deeper in the body, by
@@ -11,10 +11,11 @@
 //! that of s. A quarter of a spacing with the usual kernels, and next to nothing in the second layer. The
 //! strain along the normal is the one that balances the forces of the lattice, and not that of the body.
 //! The stress at the surface is therefore extrapolated from the places X_i + s_i, and its part on the normal,
-//! sigma n, is removed at a constant strain along the surface: stresses along it fall by lambda / (lambda + 2
-//! mu) of what is removed along the normal.
+//! sigma n, is replaced by the traction on the surface at a constant strain along it: stresses along the
+//! surface change by lambda / (lambda + 2 mu) of what changes along the normal.
 //!
-//! That holds where nothing pushes on the surface, nothing holds it, and the material there is elastic.
+//! The traction is that of the forces from outside on the particles that carry the surface. That holds where
+//! such forces are those of a traction, nothing holds the surface, and the material there is elastic.
 
 mod internal_force;
 mod measured;
@@ -22,6 +23,7 @@ mod points;
 mod shifts;
 #[cfg(test)]
 mod tests;
+mod traction;
 
 pub use internal_force::ForceOfBody;
 pub(in crate::record) use internal_force::add_system;

@@ -1,8 +1,9 @@
-//! Points at the surface of a body where the stress is that of a free surface.
+//! Points at the surface of a body where its stress is in balance with the traction there.
 
 use glam::{DMat3, DVec3};
 
 use super::internal_force::ForceOfBody;
+use super::traction::{LoadedParticle, Traction};
 use crate::fields::cauchy;
 use crate::linalg::Sym3;
 use crate::record::probe::stencil::Stencil;
@@ -12,15 +13,15 @@ use crate::world::{
     ReferenceVolume, World,
 };
 
-/// Force from outside on the particles near a point, over their stress times their area: up to the first the
-/// surface is free, from the second on it is not.
-const PUSHED: [f64; 2] = [0.05, 0.2];
+/// Force from outside on the particles near a point that no traction explains, over their stress times their
+/// area: up to the first the traction is known, from the second on it is not.
+const UNEXPLAINED: [f64; 2] = [0.05, 0.2];
 
-/// A point at or below a free surface.
-pub(super) struct FreePoint {
+/// A point at or below a surface.
+pub(super) struct PointBelow {
     /// Outward normal in the reference configuration.
     pub normal: DVec3,
-    /// Share of the traction found at the surface that the stress has here.
+    /// Share of the change of the traction at the surface that the stress has here.
     pub fade: f64,
     /// The particles near it, at the places for which their deformation gradients hold.
     pub stencil: Stencil,
@@ -37,14 +38,17 @@ pub(in crate::record::probe) struct SurfacePoints {
     pub(super) flows: bool,
     /// By which the body goes on beyond symmetry planes and periods.
     pub(super) maps: Vec<Map>,
-    pub(super) points: Vec<Option<FreePoint>>,
+    /// What each particle carries of the surface in the reference configuration, outwards, m2 (m); zero where
+    /// the surface carries no loads.
+    pub(super) surfaces: Vec<DVec3>,
+    pub(super) points: Vec<Option<PointBelow>>,
 }
 
-/// Stress at a point of a free surface.
+/// Stress at a point of a surface.
 pub(in crate::record::probe) struct SurfaceStress {
     /// Cauchy stress, Pa.
     pub stress: Sym3,
-    /// Whether it is one: 1 if nothing acts on the surface and the material is elastic, 0 if not.
+    /// Whether it is right: 1 if the traction on the surface is known and the material is elastic, 0 if not.
     pub share: f64,
 }
 
@@ -54,7 +58,7 @@ impl SurfacePoints {
         [DeformationGradient::NAME, PiolaStress::NAME, Force::NAME, ForceOfBody::NAME, Mobility::NAME]
     }
 
-    /// The stress at a point, of the particles that are `there`; none where it is at no free surface.
+    /// The stress at a point, of the particles that are `there`; none where no traction is known.
     pub fn stress(
         &self,
         k: usize,
@@ -64,19 +68,20 @@ impl SurfacePoints {
         let Some(point) = &self.points[k] else { return Ok(None) };
         let axes = world.dimension().count();
         let foot = StressesNearby::read(self, world, point.foot.shares_of_images(axes, there))?;
-        let share = foot.free(axes);
+        let traction = Traction::of(&foot.loaded);
+        let share = foot.explained(&traction, axes);
         if share == 0.0 {
             return Ok(None);
         }
         let normal = (foot.deformation().inverse().transpose() * point.normal).normalize_or_zero();
-        let of_traction = self.of_traction(&foot.stress(), normal) * point.fade;
+        let excess = foot.stress() * normal - traction.on(normal);
+        let of_traction = self.of_traction(excess, normal) * point.fade;
         let near = StressesNearby::read(self, world, point.stencil.shares_of_images(axes, there))?;
         Ok(Some(SurfaceStress { stress: Sym3::symmetric_part(near.stress() - of_traction), share }))
     }
 
-    /// What a stress at a surface has of the traction there, at constant strains along the surface.
-    fn of_traction(&self, stress: &DMat3, normal: DVec3) -> DMat3 {
-        let traction = *stress * normal;
+    /// What a stress at a surface has of such a traction there, at constant strains along the surface.
+    fn of_traction(&self, traction: DVec3, normal: DVec3) -> DMat3 {
         let pull = traction.dot(normal);
         let along = traction - pull * normal;
         let dyad = |a: DVec3, b: DVec3| DMat3::from_cols(a * b.x, a * b.y, a * b.z);
@@ -92,8 +97,8 @@ struct StressesNearby {
     shares: Vec<f64>,
     deformation: Vec<DMat3>,
     stress: Vec<DMat3>,
-    /// Forces from outside, N.
-    push: Vec<f64>,
+    /// What they carry of the surface, and the forces from outside on them.
+    loaded: Vec<LoadedParticle>,
     /// Of the cells, m2 (m).
     area: Vec<f64>,
     /// Whether any of them is held, or has flowed or failed.
@@ -129,30 +134,38 @@ impl StressesNearby {
             is_bound |= shares.iter().any(|n| damage[at(n)].0 > 0.0);
         }
         let power = (axes as f64 - 1.0) / axes as f64;
+        let loaded = |n: &(u32, u32, f64)| {
+            let map = &points.maps[n.1 as usize];
+            let surface = points.surfaces.get(n.0 as usize).copied().unwrap_or_default();
+            let gradient = f[at(n)].0;
+            let now = gradient.determinant() * (gradient.inverse().transpose() * surface);
+            let force = force[at(n)].0 - internal[at(n)].0;
+            LoadedParticle { surface: map.vector(now), force: map.vector(force) }
+        };
         Ok(Self {
             shares: shares.iter().map(|n| n.2).collect(),
             deformation: shares.iter().map(|n| image(n, f[at(n)].0)).collect(),
             stress: shares.iter().map(|n| image(n, cauchy((&f[at(n)], &p[at(n)])).to_matrix())).collect(),
-            push: shares.iter().map(|n| (force[at(n)].0 - internal[at(n)].0).length()).collect(),
+            loaded: shares.iter().map(loaded).collect(),
             area: shares.iter().map(|n| volume[at(n)].0.powf(power)).collect(),
             is_bound,
         })
     }
 
-    /// 1 if nothing acts on the particles from outside, 0 if something does.
-    fn free(&self, axes: usize) -> f64 {
+    /// 1 if that traction is what acts on the particles from outside, 0 if it is something else.
+    fn explained(&self, traction: &Traction, axes: usize) -> f64 {
         if self.is_bound || self.shares.len() <= axes {
             return 0.0;
         }
-        let push: f64 = self.push.iter().sum();
+        let left = self.loaded.iter().map(|particle| traction.left(particle).length()).sum::<f64>();
         let stress: f64 = self
             .stress
             .iter()
             .zip(&self.area)
             .map(|(stress, area)| Sym3::symmetric_part(*stress).norm() * area)
             .sum();
-        let over = if push > 0.0 { push / stress } else { 0.0 };
-        ((PUSHED[1] - over) / (PUSHED[1] - PUSHED[0])).clamp(0.0, 1.0)
+        let over = if left > 0.0 { left / stress } else { 0.0 };
+        ((UNEXPLAINED[1] - over) / (UNEXPLAINED[1] - UNEXPLAINED[0])).clamp(0.0, 1.0)
     }
 
     /// The deformation gradient at the point.

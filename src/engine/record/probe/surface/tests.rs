@@ -3,18 +3,32 @@
 use glam::DVec3;
 
 use super::shifts::shift;
+use super::traction::{LoadedParticle, Traction};
 use crate::kernels::{Kernel, KernelName};
 use crate::record::probe::tests::first_of;
 
 /// The stress along x that a probe finds in a strip of 0.3 x 0.1 m, `across` particles thick, with these
 /// displacements and conditions.
 fn strip(body: &str, poisson: f64, across: u32, fields: [&str; 2], conditions: &str, probe: &str) -> f64 {
+    strip_field("stress.xx", body, poisson, across, fields, conditions, probe)
+}
+
+/// The same of such a field.
+fn strip_field(
+    field: &str,
+    body: &str,
+    poisson: f64,
+    across: u32,
+    fields: [&str; 2],
+    conditions: &str,
+    probe: &str,
+) -> f64 {
     let ([ux, uy], spacing) = (fields, 0.1 / f64::from(across));
     let found = first_of(format!(
         r#"(dimension: Two, materials: {{"m": StVenantKirchhoff(density: 1000, young: 1e6, poisson: {poisson})}},
             bodies: [(name: "b", material: "m", shape: Box(min: (-0.15, -0.05), max: (0.15, 0.05)), spacing: {spacing}, {body})],
             conditions: [InitialDisplacement(on: Select(body: "b"), value: ("{ux}", "{uy}")), {conditions}],
-            probes: [Probe(name: "p", quantity: Field("stress.xx"), {probe})], time: (end: 1e-9, step: Fixed(1e-9)))"#
+            probes: [Probe(name: "p", quantity: Field("{field}"), {probe})], time: (end: 1e-9, step: Fixed(1e-9)))"#
     ));
     found[0].1
 }
@@ -41,6 +55,52 @@ fn the_stress_of_a_bent_strip_is_right_at_its_surface() {
             assert!((mean / most + 1.0).abs() < 3e-3, "{body} {poisson} {across}: {}", mean / most);
         }
     }
+}
+
+/// The same with a pressure on the upper side that the whole strip carries, `sigma_yy = -p`.
+#[test]
+fn the_stress_of_a_bent_strip_is_right_under_a_pressure() {
+    let (kappa, poisson, load) = (1e-3, 0.3, 40.0);
+    let ratio = poisson / (1.0 - poisson);
+    let (across, along) = (load * (1.0 - poisson * poisson) / 1e6, load * poisson * (1.0 + poisson) / 1e6);
+    let fields =
+        [&format!("{kappa}*x*y + {along}*x"), &*format!("-0.5*{kappa}*(x*x + {ratio}*y*y) - {across}*y")];
+    let most = 1e6 / (1.0 - poisson * poisson) * kappa * 0.05;
+    let pressure = format!(r#"Pressure(on: Select(body: "b", face: MaxY), value: {load})"#);
+    for body in ["formulation: TotalLagrangian", "formulation: UpdatedLagrangian", "formulation: Eulerian"] {
+        let at = |quantity: &str, y: f64, load: &str| {
+            let probe = format!(r#"at: (0.01, {y}), follows: "b""#);
+            strip_field(quantity, body, poisson, 8, fields, load, &probe)
+        };
+        let xx = at("stress.xx", 0.05, &pressure);
+        assert!((xx / most - 1.0).abs() < 3e-3, "{body}: {}", xx / most);
+        let yy = at("stress.yy", 0.05, &pressure);
+        assert!((yy / load + 1.0).abs() < 1e-3, "{body}: {yy}");
+        // What no load balances is no traction.
+        assert!(at("stress.yy", -0.05, &pressure).abs() < 1e-3 * load);
+    }
+}
+
+/// A pressure and a traction on a round surface are found again, and a force on one particle is not taken
+/// for one.
+#[test]
+fn a_traction_is_what_acts_on_all_particles_alike() {
+    let surface = |k: i32| 0.2 * DVec3::new((0.1 * f64::from(k)).sin(), (0.1 * f64::from(k)).cos(), 0.0);
+    let of = |force: &dyn Fn(i32, DVec3) -> DVec3| -> Vec<LoadedParticle> {
+        (-3..=3).map(|k| LoadedParticle { surface: surface(k), force: force(k, surface(k)) }).collect()
+    };
+    let left = |particles: &[LoadedParticle]| -> f64 {
+        let traction = Traction::of(particles);
+        particles.iter().map(|of| traction.left(of).length()).sum()
+    };
+    let pressure = of(&|_, surface| -7.0 * surface);
+    assert!((Traction::of(&pressure).on(DVec3::Y) + 7.0 * DVec3::Y).length() < 1e-12);
+    assert!(left(&pressure) < 1e-12);
+    // Symmetric about the normal y, so that the pressure has no part of it.
+    let along = of(&|_, surface| 3.0 * surface.length() * DVec3::X);
+    assert!((Traction::of(&along).on(DVec3::Y) - 3.0 * DVec3::X).length() < 1e-12);
+    assert!(left(&along) < 1e-12);
+    assert!(left(&of(&|k, _| if k == 1 { DVec3::NEG_Y } else { DVec3::ZERO })) > 1.0);
 }
 
 /// Uniaxial stress in plane strain, balanced by a traction on one side: there it is what the traction says,
