@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use super::internal_force::ForceOfBody;
-use super::traction::{LoadedParticle, Traction};
+use super::traction::{LoadedParticle, SurfaceTraction};
 use crate::fields::cauchy;
 use crate::linalg::Sym3;
 use crate::record::probe::stencil::Stencil;
@@ -68,7 +68,7 @@ impl SurfacePoints {
         let Some(point) = &self.points[k] else { return Ok(None) };
         let axes = world.dimension().count();
         let foot = StressesNearby::read(self, world, point.foot.shares_of_images(axes, there))?;
-        let traction = Traction::of(&foot.loaded);
+        let traction = SurfaceTraction::of(&foot.loaded);
         let share = foot.explained(&traction, axes);
         if share == 0.0 {
             return Ok(None);
@@ -153,7 +153,7 @@ impl StressesNearby {
     }
 
     /// 1 if that traction is what acts on the particles from outside, 0 if it is something else.
-    fn explained(&self, traction: &Traction, axes: usize) -> f64 {
+    fn explained(&self, traction: &SurfaceTraction, axes: usize) -> f64 {
         if self.is_bound || self.shares.len() <= axes {
             return 0.0;
         }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::shifts::shift;
-use super::traction::{LoadedParticle, Traction};
+use super::traction::{LoadedParticle, SurfaceTraction};
 use crate::kernels::{Kernel, KernelName};
 use crate::record::probe::tests::first_of;
 
@@ -90,15 +90,15 @@ fn a_traction_is_what_acts_on_all_particles_alike() {
         (-3..=3).map(|k| LoadedParticle { surface: surface(k), force: force(k, surface(k)) }).collect()
     };
     let left = |particles: &[LoadedParticle]| -> f64 {
-        let traction = Traction::of(particles);
+        let traction = SurfaceTraction::of(particles);
         particles.iter().map(|of| traction.left(of).length()).sum()
     };
     let pressure = of(&|_, surface| -7.0 * surface);
-    assert!((Traction::of(&pressure).on(DVec3::Y) + 7.0 * DVec3::Y).length() < 1e-12);
+    assert!((SurfaceTraction::of(&pressure).on(DVec3::Y) + 7.0 * DVec3::Y).length() < 1e-12);
     assert!(left(&pressure) < 1e-12);
     // Symmetric about the normal y, so that the pressure has no part of it.
     let along = of(&|_, surface| 3.0 * surface.length() * DVec3::X);
-    assert!((Traction::of(&along).on(DVec3::Y) - 3.0 * DVec3::X).length() < 1e-12);
+    assert!((SurfaceTraction::of(&along).on(DVec3::Y) - 3.0 * DVec3::X).length() < 1e-12);
     assert!(left(&along) < 1e-12);
     assert!(left(&of(&|k, _| if k == 1 { DVec3::NEG_Y } else { DVec3::ZERO })) > 1.0);
 }

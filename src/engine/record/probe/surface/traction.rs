@@ -11,16 +11,16 @@ pub(super) struct LoadedParticle {
     pub force: DVec3,
 }
 
-/// The traction that fits the forces on particles best, `f_i = (-p A_i / |A_i| + t) |A_i|`: first its pressure
-/// p, which follows a curved surface, then the rest t, which has one direction.
-pub(super) struct Traction {
+/// The traction that fits the forces on particles best, `f_i = (-p A_i / |A_i| + t) |A_i|`: first its
+/// pressure p, which follows a curved surface, then the rest t, which has one direction.
+pub(super) struct SurfaceTraction {
     /// Pa.
     pressure: f64,
     /// Pa.
     along: DVec3,
 }
 
-impl Traction {
+impl SurfaceTraction {
     /// That on these particles.
     pub fn of(particles: &[LoadedParticle]) -> Self {
         let squares: f64 = particles.iter().map(|of| of.surface.length_squared()).sum();
