@@ -18,6 +18,10 @@ use crate::world::{
 /// Note on contact of particles for a sliding body.
 pub(in crate::contact) const BUMPS: &str = "in sliding, the bumps of a surface of particles cause tangential forces of up to a third of the normal force, with and without friction";
 
+/// Parts of one body closer than this in the reference configuration do not touch, over the distance of two
+/// particles that do: bonds hold them apart.
+pub(in crate::contact) const APART: f64 = 2.5;
+
 /// Contact data of the particles of a body.
 #[derive(Clone)]
 pub(in crate::contact) struct MemberParticles {

@@ -18,7 +18,7 @@ mod sides;
 pub(super) use crossing::{Crossing, RAMP, growing, share_of_slope};
 pub use error::CONTACT;
 pub(super) use error::failed;
-pub(super) use members::{BUMPS, MemberColumns, MemberParticles, Members};
+pub(super) use members::{APART, BUMPS, MemberColumns, MemberParticles, Members};
 pub(super) use motion::MotionBounds;
 pub(super) use node_view::{NodeMotion, NodeTurn, NodeView};
 pub(super) use shape::{ParticleShape, Proximity, of_pair};

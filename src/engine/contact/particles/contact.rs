@@ -3,7 +3,7 @@
 use super::pairs::{ContactPairs, PairPush};
 use super::search::{ContactParticles, Search};
 use crate::contact::active::{ActiveContacts, ContactEnd, ContactNodes, MinimumLength};
-use crate::contact::bodies::{MemberColumns, MemberParticles, MotionBounds, Proximity, failed};
+use crate::contact::bodies::{APART, MemberColumns, MemberParticles, MotionBounds, Proximity, failed};
 use crate::contact::response::time_step::{self, Touches};
 use crate::contact::response::{ContactEnergy, History, Interaction, PairKey};
 use crate::neighbors::Periodic;
@@ -11,10 +11,6 @@ use crate::parallel::{Maximum, sum_over_blocks};
 use crate::schedule::{Step, StepError};
 use crate::symmetry::Map;
 use crate::world::{Position, ReferencePosition};
-
-/// Particles of one body closer than this in the reference configuration do not touch, over the distance at
-/// which they would: bonds hold them apart.
-const APART: f64 = 2.5;
 
 /// Candidates of every particle of a side with memory from the start.
 const CANDIDATES: usize = 12;

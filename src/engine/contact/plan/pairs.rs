@@ -13,7 +13,7 @@ use crate::contact::response::Interaction;
 use crate::contact::skins::{SkinOnTool, SkinPair};
 use crate::contact::system::{ContactActivity, FailingSkins, Touching};
 use crate::contact::tools::SurfaceContact;
-use crate::plugin::{BodyPlan, SimBuilder};
+use crate::plugin::{BodyPlan, Offer, SimBuilder};
 use crate::rigid::sphere_of;
 use crate::scene::{ContactSurface, Item, Problem};
 use crate::skins::Skin;
@@ -65,24 +65,35 @@ impl Planner<'_> {
         named: &NamedPair<'_>,
         [first, second]: [&BodyPlan; 2],
     ) -> Result<Vec<(Touching, ContactActivity)>, Vec<Problem>> {
-        if first.id != second.id {
-            if let (Some(one), Some(other)) = (self.skin(first, named), self.skin(second, named)) {
-                let interaction = self.interaction(named, ContactSurface::Skin)?;
-                let pair = SkinPair::new(interaction, [one.clone(), other.clone()], self.sim.periodic());
-                named.refuse_short_periods(pair.min_period(), self.sim)?;
-                let skins = Touching::Skins(Box::new(pair));
-                return self.until_failure(skins, &[(first, one), (second, other)], &|planner| {
-                    planner.of_particles(named, [first, second])
-                });
+        if first.id == second.id
+            && let Some(reason) = self.reason_for_particles(first)
+        {
+            if named.contact.surface == ContactSurface::Skin {
+                let name = &first.name;
+                self.warnings.push(format!(
+                    "body `{name}` touches itself with its particles, not with its surface: {reason}; {BUMPS}"
+                ));
             }
-        } else if named.contact.surface == ContactSurface::Skin {
-            let warning = format!(
-                "body `{}` touches itself with its particles, not with its surface; {BUMPS}",
-                first.name
-            );
-            self.warnings.push(warning);
+        } else if let (Some(one), Some(other)) = (self.skin(first, named), self.skin(second, named)) {
+            let interaction = self.interaction(named, ContactSurface::Skin)?;
+            let pair = SkinPair::new(interaction, [one.clone(), other.clone()], self.sim.periodic());
+            named.refuse_short_periods(pair.min_period(), self.sim)?;
+            let mut carried = vec![(first, one), (second, other)];
+            carried.dedup_by_key(|(body, _)| body.id);
+            return self.until_failure(Touching::Skins(Box::new(pair)), &carried, &|planner| {
+                planner.of_particles(named, [first, second])
+            });
         }
         Ok(always(self.of_particles(named, [first, second])?))
+    }
+
+    /// Why a body that touches itself does so with its particles, if it does.
+    fn reason_for_particles(&self, body: &BodyPlan) -> Option<&'static str> {
+        if mirrors(self.planes, body.id, body.id).len() > 1 {
+            return Some("it may touch its image behind a symmetry plane");
+        }
+        let joins = body.offers(Offer::PairControl);
+        joins.then_some("its kernels join what is near and does not touch")
     }
 
     /// The particles of two deformable bodies, or of one with itself.

@@ -4,13 +4,16 @@
 //! Bounds of the speeds of the bodies say when the skins may have moved so far. Then the displacements of
 //! their vertices are evaluated, and where they are smaller, the facets are kept. The search covers regions
 //! of the skins, which are searched again when the bodies may have moved a few spacings.
+//!
+//! Of one skin that may touch itself, facets that are near each other in the reference configuration are left
+//! out.
 
 use glam::DVec3;
 
 use super::displaced::{Displaced, approach};
 use super::near_tool::{FASTER, MARGIN};
 use super::region::SkinRegion;
-use crate::contact::bodies::MotionBounds;
+use crate::contact::bodies::{APART, MotionBounds};
 use crate::contact::response::PairKey;
 use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic};
 use crate::parallel::{Picked, for_each_block};
@@ -33,6 +36,8 @@ pub(super) struct NearSkins {
     /// Whether there is memory for all that facets near each other need.
     has_capacity: bool,
     periodic: Periodic,
+    /// Centres of all facets in the reference configuration, m, if both skins are one.
+    of_itself: Option<Vec<DVec3>>,
     regions: [SkinRegion; 2],
     /// Where the vertices are, m, and where they were when the facets were found.
     places: [Vec<DVec3>; 2],
@@ -58,11 +63,13 @@ impl NearSkins {
     /// None yet.
     pub fn new(skins: [&Skin; 2], periodic: Periodic) -> Self {
         let vertices = skins.map(|skin| vec![DVec3::ZERO; skin.vertices()]);
+        let centers = |skin: &Skin| (0..skin.facets.corners.len()).map(|k| skin.facets.center(k)).collect();
         let of_facets = |more: usize| skins.map(|skin| Vec::with_capacity(skin.facets.corners.len() + more));
         Self {
             left: 0.0,
             has_capacity: false,
             periodic,
+            of_itself: (skins[0].body == skins[1].body).then(|| centers(skins[0])),
             regions: skins.map(SkinRegion::new),
             found_at: vertices.clone(),
             is_near: false,
@@ -191,13 +198,23 @@ impl NearSkins {
             let (skin, list) = (skins[side], &self.lists[side]);
             let (own, other) = (&self.regions[side].facets, &self.regions[1 - side].facets);
             let (starts, others) = (&mut self.starts[side], &mut self.others[side]);
+            let (centers, periodic) = (self.of_itself.as_ref(), &self.periodic);
+            // Particles beside two facets are a spacing farther apart than these.
+            let may_touch = |facet: u32, other: u32| {
+                centers.is_none_or(|centers| {
+                    let way = centers[other as usize] - centers[facet as usize];
+                    periodic.minimal_image(way).length() > (APART - 1.0) * skin.spacing
+                })
+            };
             starts.clear();
             others.clear();
             self.near.clear();
             for (row, &facet) in own.iter().enumerate() {
                 starts.resize(facet as usize + 1, others.len() as u32);
-                others.extend(list.row(row).iter().map(|&k| other[k as usize]));
-                if !list.row(row).is_empty() {
+                let before = others.len();
+                let near = list.row(row).iter().map(|&k| other[k as usize]);
+                others.extend(near.filter(|&other| may_touch(facet, other)));
+                if others.len() > before {
                     self.near.push(facet);
                 }
             }

@@ -1,4 +1,4 @@
-//! Contact of the skins of two deformable bodies.
+//! Contact of the skins of two deformable bodies, or of one with itself.
 //!
 //! Points of either skin are tested against the facets of the other one, and the integral is shared. A point
 //! counts by
@@ -12,6 +12,9 @@
 //! including the change of w as the foot moves, and acts along the line between point and foot. Friction acts
 //! on both bodies at the point; the material of the other body follows it with the deformation gradient at
 //! the foot.
+//!
+//! Where a body touches itself, its points are tested against its facets: points of both places that touch
+//! share the integral, as those of two bodies do.
 
 use std::sync::Arc;
 
@@ -37,7 +40,9 @@ const CORNERS: f64 = 2.0;
 /// Contact of two skins.
 pub(in crate::contact) struct SkinPair {
     interaction: Interaction,
-    /// Both skins.
+    /// Number of skins whose points are tested: both, or the one of a body that touches itself.
+    sides: usize,
+    /// Both skins; those of a body that touches itself are one, once with its points and once with its facets.
     pub patches: [Patch; 2],
     /// Whether the references of both bodies stay.
     keeps_reference: bool,
@@ -54,15 +59,18 @@ impl SkinPair {
     /// Contact of two skins in a domain that is periodic along some axes.
     pub fn new(interaction: Interaction, skins: [Arc<Skin>; 2], periodic: Periodic) -> Self {
         let rule = QuadratureRule::exact(skins[0].facets.axes);
-        let passes = skins.each_ref().map(|skin| {
+        let sides = if skins[0].body == skins[1].body { 1 } else { 2 };
+        let passes = [0, 1].map(|side| {
             let mut contacts = ActiveContacts::default();
-            contacts.reserve(rule.len() * skin.facets.corners.len());
+            if side < sides {
+                contacts.reserve(rule.len() * skins[side].facets.corners.len());
+            }
             contacts
         });
         let places = skins.each_ref().map(|skin| Vec::with_capacity(skin.facets.corners.len()));
         let near = NearSkins::new(skins.each_ref().map(|skin| &**skin), periodic);
         let patches = skins.map(Patch::new);
-        Self { interaction, patches, keeps_reference: false, rule, near, periodic, places, passes }
+        Self { interaction, sides, patches, keeps_reference: false, rule, near, periodic, places, passes }
     }
 
     /// Minimum period of the domain with which the contact works, m.
@@ -117,7 +125,7 @@ impl SkinPair {
         }
         let mut energies = ContactEnergy::default();
         let (mut stiffest, mut gap) = (Maximum::default(), MinimumLength::default());
-        for side in 0..2 {
+        for side in 0..self.sides {
             let (of_side, of_points) = self.evaluate(side, dt);
             energies.add(&of_side);
             gap.add(&of_points);

@@ -59,6 +59,38 @@ fn blocks_that_slide_with_friction_feel_the_coefficient() {
     }
 }
 
+/// Two blocks that slide on each other are one body or two: the forces are the same.
+#[test]
+fn a_body_touches_itself_as_two_bodies_touch_each_other() {
+    let place = |one: bool| {
+        let [low, high] = ["Box(min: (0, 0), max: (0.2, 0.05))", "Box(min: (0.05, 0.08), max: (0.1, 0.13))"];
+        let rest = r#"material: "soft", spacing: 0.01, formulation: TotalLagrangian"#;
+        let (bodies, upper) = if one {
+            (format!(r#"(name: "low", shape: Union([{low}, {high}]), {rest})"#), "low")
+        } else {
+            (format!(r#"(name: "low", shape: {low}, {rest}), (name: "high", shape: {high}, {rest})"#), "high")
+        };
+        let mut sim = simulation(&format!(
+            r#"(dimension: Two,
+                materials: {{"soft": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)}},
+                bodies: [{bodies}],
+                conditions: [InitialVelocity(on: Select(body: "{upper}", within: Box(min: (0, 0.07), max: (1, 1))), value: (1.0, -2.0))],
+                contacts: [Contact(between: ("low", "{upper}"), law: Penalty(), friction: 0.3)],
+                time: (end: 0.03, step: Fixed(2e-5)))"#
+        ));
+        sim.run(|_| true).unwrap();
+        assert!(sim.ledger().total_named("friction") > 0.0);
+        let all: Vec<_> = (0..sim.world().bodies().len()).map(|k| centre(&sim, k)).collect();
+        (all, sim.ledger().total_named("friction"), sim.ledger().total_named("kinetic"))
+    };
+    let ((one, friction_of_one, kinetic_of_one), (two, friction, kinetic)) = (place(true), place(false));
+    // The lower block has four times the mass of the upper one.
+    let middle = 0.8 * two[0].0 + 0.2 * two[1].0;
+    assert!((one[0].0 - middle).length() < 1e-9, "{} {middle}", one[0].0);
+    assert!((friction_of_one / friction - 1.0).abs() < 1e-6, "{friction_of_one} {friction}");
+    assert!((kinetic_of_one / kinetic - 1.0).abs() < 1e-6, "{kinetic_of_one} {kinetic}");
+}
+
 #[test]
 fn skins_go_on_exactly_after_a_restart() {
     let make = || thrown("Two", (3.0, -2.0), "friction: 0.3, restitution: 0.8", 0.01);
