@@ -40,7 +40,8 @@ pub struct Contact {
 pub enum ContactSurface {
     /// The surface of the shape, as facets that move with the particles. `Particles` is used instead for
     /// bodies whose surface has no facets, for contact with a `Wall`, for an Eulerian body or one that a
-    /// symmetry plane cuts with itself, and for a body that can fail once a particle of the surface has failed.
+    /// symmetry plane cuts with itself, and for a body that can fail once a particle of the surface has
+    /// failed.
     #[default]
     Skin,
     /// Each particle, as an ellipsoid: a sphere with a radius of half a spacing, mapped by the deformation

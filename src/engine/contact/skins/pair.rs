@@ -42,7 +42,7 @@ pub(in crate::contact) struct SkinPair {
     interaction: Interaction,
     /// Number of skins whose points are tested: both, or the one of a body that touches itself.
     sides: usize,
-    /// Both skins; those of a body that touches itself are one, once with its points and once with its facets.
+    /// Both skins; of a body that touches itself its skin twice, first with its points, then with its facets.
     pub patches: [Patch; 2],
     /// Whether the references of both bodies stay.
     keeps_reference: bool,
