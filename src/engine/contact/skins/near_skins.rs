@@ -6,7 +6,8 @@
 //! of the skins, which are searched again when the bodies may have moved a few spacings.
 //!
 //! Of one skin that may touch itself, facets that are near each other in the reference configuration are left
-//! out.
+//! out: those that bonds hold apart, and those with no gap between them, such as both sides of a thin part,
+//! or one side that is compressed.
 
 use glam::DVec3;
 
@@ -25,6 +26,11 @@ const NEAR: f64 = 1.5;
 /// How far the corners of a facet are from its centre at most, over the spacing, in two and three dimensions,
 /// and by how much it may be stretched before a period is too short.
 const LONGEST: [f64; 2] = [0.25, 0.75];
+/// Distance in the reference configuration up to which one of two facets of a skin has to face the other,
+/// over the spacing: others come within half a spacing only as the body is deformed to an eighth.
+const ONE_PART: f64 = 4.0;
+/// Sine of the angle between a facet and the way to another one, above which it faces that.
+const FACING: f64 = 1e-3;
 /// Share of the margin that must be left for the facets to be kept.
 const KEPT: f64 = 0.3;
 const STRETCHED: f64 = 2.0;
@@ -36,8 +42,8 @@ pub(super) struct NearSkins {
     /// Whether there is memory for all that facets near each other need.
     has_capacity: bool,
     periodic: Periodic,
-    /// Centres of all facets in the reference configuration, m, if both skins are one.
-    of_itself: Option<Vec<DVec3>>,
+    /// Facets of the reference configuration, if both skins are one.
+    of_itself: Option<ReferenceFacets>,
     regions: [SkinRegion; 2],
     /// Where the vertices are, m, and where they were when the facets were found.
     places: [Vec<DVec3>; 2],
@@ -63,13 +69,12 @@ impl NearSkins {
     /// None yet.
     pub fn new(skins: [&Skin; 2], periodic: Periodic) -> Self {
         let vertices = skins.map(|skin| vec![DVec3::ZERO; skin.vertices()]);
-        let centers = |skin: &Skin| (0..skin.facets.corners.len()).map(|k| skin.facets.center(k)).collect();
         let of_facets = |more: usize| skins.map(|skin| Vec::with_capacity(skin.facets.corners.len() + more));
         Self {
             left: 0.0,
             has_capacity: false,
             periodic,
-            of_itself: (skins[0].body == skins[1].body).then(|| centers(skins[0])),
+            of_itself: (skins[0].body == skins[1].body).then(|| ReferenceFacets::of(skins[0])),
             regions: skins.map(SkinRegion::new),
             found_at: vertices.clone(),
             is_near: false,
@@ -184,8 +189,10 @@ impl NearSkins {
 
     /// Pairs the facets of the regions whose centres are no farther apart than `reach`, m.
     fn pair(&mut self, skins: [&Skin; 2], reach: f64, points: usize) -> Result<(), NeighborError> {
+        // What touches itself has all in the first side.
+        let sides = if self.of_itself.is_some() { 1 } else { 2 };
         let clouds = [0, 1].map(|side| Cloud::uniform(&self.centers[side], reach));
-        for side in 0..2 {
+        for side in 0..sides {
             self.search.between(
                 clouds[side],
                 clouds[1 - side],
@@ -194,17 +201,13 @@ impl NearSkins {
                 &mut self.lists[side],
             )?;
         }
-        for side in 0..2 {
+        for side in 0..sides {
             let (skin, list) = (skins[side], &self.lists[side]);
             let (own, other) = (&self.regions[side].facets, &self.regions[1 - side].facets);
             let (starts, others) = (&mut self.starts[side], &mut self.others[side]);
-            let (centers, periodic) = (self.of_itself.as_ref(), &self.periodic);
-            // Particles beside two facets are a spacing farther apart than these.
+            let (of_itself, periodic) = (self.of_itself.as_ref(), &self.periodic);
             let may_touch = |facet: u32, other: u32| {
-                centers.is_none_or(|centers| {
-                    let way = centers[other as usize] - centers[facet as usize];
-                    periodic.minimal_image(way).length() > (APART - 1.0) * skin.spacing
-                })
+                of_itself.is_none_or(|facets| facets.may_touch(facet, other, skin.spacing, periodic))
             };
             starts.clear();
             others.clear();
@@ -226,6 +229,10 @@ impl NearSkins {
             self.facets[side].extend(vertices.flat_map(|&vertex| skin.facets_at(vertex)));
             self.facets[side].sort_unstable();
             self.facets[side].dedup();
+        }
+        if sides == 1 {
+            let [first, second] = &mut self.facets;
+            second.clone_from(first);
         }
         Ok(())
     }
@@ -273,6 +280,29 @@ impl NearSkins {
     /// The box around the region of a side.
     fn around(&self, side: usize) -> Aabb {
         Aabb::around(self.regions[side].vertices.iter().map(|&vertex| self.places[side][vertex as usize]))
+    }
+}
+
+/// The facets of a skin that may touch itself.
+struct ReferenceFacets {
+    /// Centres, m, and outward normals.
+    facets: Vec<(DVec3, DVec3)>,
+}
+
+impl ReferenceFacets {
+    fn of(skin: &Skin) -> Self {
+        let facet = |k: usize| (skin.facets.center(k), skin.facets.normal_and_measure(k).0);
+        Self { facets: (0..skin.facets.corners.len()).map(facet).collect() }
+    }
+
+    /// Whether two of them may touch each other.
+    fn may_touch(&self, facet: u32, other: u32, spacing: f64, periodic: &Periodic) -> bool {
+        let ((own, normal), (there, across)) = (self.facets[facet as usize], self.facets[other as usize]);
+        let way = periodic.minimal_image(there - own);
+        let least = FACING * way.length();
+        let has_gap = way.dot(normal) > least || way.dot(across) < -least;
+        // Particles beside two facets are a spacing farther apart than these.
+        way.length() > if has_gap { APART - 1.0 } else { ONE_PART } * spacing
     }
 }
 

@@ -78,8 +78,13 @@ fn a_body_touches_itself_as_two_bodies_touch_each_other() {
                 contacts: [Contact(between: ("low", "{upper}"), law: Penalty(), friction: 0.3)],
                 time: (end: 0.03, step: Fixed(2e-5)))"#
         ));
+        sim.start().unwrap();
+        let before = (momentum(&sim), angular_momentum(&sim));
         sim.run(|_| true).unwrap();
         assert!(sim.ledger().total_named("friction") > 0.0);
+        assert!((momentum(&sim) - before.0).length() < 1e-12 * before.0.length());
+        assert!((angular_momentum(&sim) - before.1).length() < 1e-12 * before.1.length());
+        assert!(sim.ledger().relative_error().abs() < 1e-3, "{}", sim.ledger().relative_error());
         let all: Vec<_> = (0..sim.world().bodies().len()).map(|k| centre(&sim, k)).collect();
         (all, sim.ledger().total_named("friction"), sim.ledger().total_named("kinetic"))
     };
@@ -89,6 +94,26 @@ fn a_body_touches_itself_as_two_bodies_touch_each_other() {
     assert!((one[0].0 - middle).length() < 1e-9, "{} {middle}", one[0].0);
     assert!((friction_of_one / friction - 1.0).abs() < 1e-6, "{friction_of_one} {friction}");
     assert!((kinetic_of_one / kinetic - 1.0).abs() < 1e-6, "{kinetic_of_one} {kinetic}");
+}
+
+/// The sides of a sheet two particles thick come near each other as it is stretched, and do not touch.
+#[test]
+fn a_stretched_sheet_does_not_touch_itself() {
+    for (dimension, shape, value) in [
+        ("Two", "Box(min: (0, 0), max: (0.2, 0.02))", r#"("4*x", "-0.8*y")"#),
+        ("Three", "Box(min: (0, 0, 0), max: (0.1, 0.1, 0.02))", r#"("1.5*x", "1.5*y", "-0.84*z")"#),
+    ] {
+        let mut sim = simulation(&format!(
+            r#"(dimension: {dimension},
+                materials: {{"soft": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)}},
+                bodies: [(name: "sheet", material: "soft", shape: {shape}, spacing: 0.01, formulation: TotalLagrangian)],
+                conditions: [InitialDisplacement(on: Select(body: "sheet"), value: {value})],
+                contacts: [Contact(between: ("sheet", "sheet"), law: Penalty())],
+                time: (end: 1e-9, step: Fixed(1e-9)))"#
+        ));
+        sim.run(|_| true).unwrap();
+        assert_eq!(sim.ledger().total_named("contact"), 0.0, "{dimension}");
+    }
 }
 
 #[test]
