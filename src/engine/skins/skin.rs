@@ -151,15 +151,15 @@ impl Skin {
         particles
     }
 
-    /// The directed surface that each of `count` particles carries at the start, m2 (m in two dimensions): a
-    /// uniform traction puts on it this much of the surface times the traction.
-    pub fn surfaces_of_particles(&self, count: usize) -> Vec<DVec3> {
-        let mut surfaces = vec![DVec3::ZERO; count];
+    /// The parts of facets that each of `count` particles carries at the start, outwards, m2 (m in two
+    /// dimensions): a uniform traction on them puts their sum times the traction on the particle.
+    pub fn surfaces_of_particles(&self, count: usize) -> Vec<Vec<DVec3>> {
+        let mut surfaces = vec![Vec::new(); count];
         for facet in 0..self.facets.corners.len() as u32 {
             let (normal, measure) = self.facets.normal_and_measure(facet as usize);
             let part = normal * (measure / self.facets.axes as f64);
             for carrier in self.corners_of(facet).iter().flat_map(|&vertex| self.carriers(vertex)) {
-                surfaces[carrier.particle as usize] += carrier.weight * self.map(carrier).vector(part);
+                surfaces[carrier.particle as usize].push(carrier.weight * self.map(carrier).vector(part));
             }
         }
         surfaces

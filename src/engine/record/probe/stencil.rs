@@ -88,6 +88,11 @@ impl Stencil {
         self.0.iter().map(|near| near.particle)
     }
 
+    /// The same with the numbers of the maps of images.
+    pub fn images(&self) -> impl Iterator<Item = (u32, u32)> {
+        self.0.iter().map(|near| (near.particle, near.map))
+    }
+
     /// The same particles, each of them moved by such a way, m; images go the image of it.
     pub fn moved(&self, way: impl Fn(u32) -> DVec3, maps: &[Map]) -> Self {
         let of = |near: &StencilParticle| {

@@ -21,6 +21,10 @@ const LENGTH: [f64; 2] = [0.125, 0.5];
 /// Depth of the second layer over the spacing: only the stress of the first one has a traction.
 const SECOND: f64 = 1.5;
 
+/// Cosine of the angle to the normal at a point up to which a facet is of the same side of the body: a
+/// particle near an edge, or of a thin body, carries others too.
+const FACING: f64 = 0.5;
+
 /// Where a point lies, with the point of the surface above it, the outward normal there, and its depth, m.
 #[derive(Clone, Copy)]
 struct SurfacePlace {
@@ -96,25 +100,34 @@ impl MeasuredPoints<'_> {
         particles.dedup();
         let shifts = shifts(&particles, body, &kernel, support, &maps).ok()?;
         let shift = |particle: u32| particles.binary_search(&particle).map_or(DVec3::ZERO, |k| shifts[k]);
+        let surfaces = self.surfaces(&repeats);
         let mut found = near.into_iter().zip(feet);
         let point = |place: &Option<SurfacePlace>| {
             let (place, (stencil, foot)) = (place.as_ref()?, found.next()?);
+            let foot = foot?;
+            let carried = |(particle, map): (u32, u32)| {
+                let parts = surfaces.get(particle as usize).into_iter().flatten();
+                let facing = parts.map(|part| maps[map as usize].vector(*part));
+                let facing = facing.filter(|part| part.dot(place.normal) > FACING * part.length());
+                (particle, map, facing.sum())
+            };
             Some(PointBelow {
                 normal: place.normal,
                 fade: (1.0 - place.depth / (SECOND * body.spacing)).max(0.0),
                 stencil: stencil?.moved(shift, &maps),
-                foot: foot?.moved(shift, &maps),
+                surfaces: foot.images().map(carried).collect(),
+                foot: foot.moved(shift, &maps),
             })
         };
         let points = places.iter().map(point).collect();
         let elastic = law.elastic();
         let coupling = elastic.lambda / (elastic.lambda + 2.0 * elastic.shear);
-        let surfaces = self.surfaces(&repeats);
-        Some(SurfacePoints { body: body.id, coupling, flows: law.remembers_path(), maps, surfaces, points })
+        Some(SurfacePoints { body: body.id, coupling, flows: law.remembers_path(), maps, points })
     }
 
-    /// What each particle carries of the surface of the body, m2 (m); none where loads act on particles.
-    fn surfaces(&self, repeats: &[Repeat]) -> Vec<DVec3> {
+    /// The parts that each particle carries of the surface of the body, m2 (m); none where loads act on
+    /// particles.
+    fn surfaces(&self, repeats: &[Repeat]) -> Vec<Vec<DVec3>> {
         let Self { body, sim, .. } = *self;
         if !body.offers(Offer::DeformedContact) {
             return Vec::new();

@@ -27,6 +27,9 @@ pub(super) struct PointBelow {
     pub stencil: Stencil,
     /// The same of the point of the surface above it.
     pub foot: Stencil,
+    /// What each of these carries of this side of the body in the reference configuration, outwards, m2 (m),
+    /// by its number and that of its map.
+    pub surfaces: Vec<(u32, u32, DVec3)>,
 }
 
 /// Points of a body, with those of them that are at a surface.
@@ -38,9 +41,6 @@ pub(in crate::record::probe) struct SurfacePoints {
     pub(super) flows: bool,
     /// By which the body goes on beyond symmetry planes and periods.
     pub(super) maps: Vec<Map>,
-    /// What each particle carries of the surface in the reference configuration, outwards, m2 (m); zero where
-    /// the surface carries no loads.
-    pub(super) surfaces: Vec<DVec3>,
     pub(super) points: Vec<Option<PointBelow>>,
 }
 
@@ -68,8 +68,9 @@ impl SurfacePoints {
         let Some(point) = &self.points[k] else { return Ok(None) };
         let axes = world.dimension().count();
         let foot = StressesNearby::read(self, world, point.foot.shares_of_images(axes, there))?;
-        let traction = SurfaceTraction::of(&foot.loaded);
-        let share = foot.explained(&traction, axes);
+        let loaded = self.loaded(&point.surfaces, world, there)?;
+        let traction = SurfaceTraction::of(&loaded);
+        let share = foot.explained(loaded.iter().map(|of| traction.left(of).length()).sum(), axes);
         if share == 0.0 {
             return Ok(None);
         }
@@ -78,6 +79,25 @@ impl SurfacePoints {
         let of_traction = self.of_traction(excess, normal) * point.fade;
         let near = StressesNearby::read(self, world, point.stencil.shares_of_images(axes, there))?;
         Ok(Some(SurfaceStress { stress: Sym3::symmetric_part(near.stress() - of_traction), share }))
+    }
+
+    /// The particles that carry these parts of the surface, with the forces from outside on them.
+    fn loaded(
+        &self,
+        surfaces: &[(u32, u32, DVec3)],
+        world: &World,
+        there: &dyn Fn(u32) -> bool,
+    ) -> Result<Vec<LoadedParticle>, MissingColumn> {
+        let (view, rows) = world.body_view(self.body);
+        let (force, internal) = (view.read::<Force>()?, view.read::<ForceOfBody>()?);
+        let deformation = view.read::<DeformationGradient>()?;
+        let of = |&(particle, map, surface): &(u32, u32, DVec3)| {
+            let (row, map) = (rows.start + particle as usize, &self.maps[map as usize]);
+            let gradient = map.tensor(deformation[row].0);
+            let surface = gradient.determinant() * (gradient.inverse().transpose() * surface);
+            LoadedParticle { surface, force: map.vector(force[row].0 - internal[row].0) }
+        };
+        Ok(surfaces.iter().filter(|carried| there(carried.0)).map(of).collect())
     }
 
     /// What a stress at a surface has of such a traction there, at constant strains along the surface.
@@ -97,8 +117,6 @@ struct StressesNearby {
     shares: Vec<f64>,
     deformation: Vec<DMat3>,
     stress: Vec<DMat3>,
-    /// What they carry of the surface, and the forces from outside on them.
-    loaded: Vec<LoadedParticle>,
     /// Of the cells, m2 (m).
     area: Vec<f64>,
     /// Whether any of them is held, or has flowed or failed.
@@ -115,7 +133,6 @@ impl StressesNearby {
         let axes = world.dimension().count();
         let at = |n: &(u32, u32, f64)| rows.start + n.0 as usize;
         let (f, p) = (view.read::<DeformationGradient>()?, view.read::<PiolaStress>()?);
-        let (force, internal) = (view.read::<Force>()?, view.read::<ForceOfBody>()?);
         let mobility = view.read::<Mobility>()?;
         let volume = view.read::<ReferenceVolume>()?;
         let image = |n: &(u32, u32, f64), tensor: DMat3| points.maps[n.1 as usize].tensor(tensor);
@@ -134,30 +151,21 @@ impl StressesNearby {
             is_bound |= shares.iter().any(|n| damage[at(n)].0 > 0.0);
         }
         let power = (axes as f64 - 1.0) / axes as f64;
-        let loaded = |n: &(u32, u32, f64)| {
-            let map = &points.maps[n.1 as usize];
-            let surface = points.surfaces.get(n.0 as usize).copied().unwrap_or_default();
-            let gradient = f[at(n)].0;
-            let now = gradient.determinant() * (gradient.inverse().transpose() * surface);
-            let force = force[at(n)].0 - internal[at(n)].0;
-            LoadedParticle { surface: map.vector(now), force: map.vector(force) }
-        };
         Ok(Self {
             shares: shares.iter().map(|n| n.2).collect(),
             deformation: shares.iter().map(|n| image(n, f[at(n)].0)).collect(),
             stress: shares.iter().map(|n| image(n, cauchy((&f[at(n)], &p[at(n)])).to_matrix())).collect(),
-            loaded: shares.iter().map(loaded).collect(),
             area: shares.iter().map(|n| volume[at(n)].0.powf(power)).collect(),
             is_bound,
         })
     }
 
-    /// 1 if that traction is what acts on the particles from outside, 0 if it is something else.
-    fn explained(&self, traction: &SurfaceTraction, axes: usize) -> f64 {
+    /// 1 if a traction is all that acts on the particles from outside, 0 if it leaves forces, N, that are
+    /// large beside the stress.
+    fn explained(&self, left: f64, axes: usize) -> f64 {
         if self.is_bound || self.shares.len() <= axes {
             return 0.0;
         }
-        let left = self.loaded.iter().map(|particle| traction.left(particle).length()).sum::<f64>();
         let stress: f64 = self
             .stress
             .iter()

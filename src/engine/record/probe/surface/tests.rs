@@ -81,6 +81,31 @@ fn the_stress_of_a_bent_strip_is_right_under_a_pressure() {
     }
 }
 
+/// A uniform pressure on one side of a block, and one on a side of a thin strip: near edges, and where
+/// particles carry both sides, the stress is that of the block as well.
+#[test]
+fn a_pressure_is_that_of_one_side() {
+    let (load, poisson) = (40.0, 0.3);
+    let (across, along) = (load * (1.0 - poisson * poisson) / 1e6, load * poisson * (1.0 + poisson) / 1e6);
+    let fields = [&format!("{along}*x"), &*format!("-{across}*y")];
+    let pressure = format!(r#"Pressure(on: Select(body: "b", face: MaxY), value: {load})"#);
+    let body = "formulation: TotalLagrangian";
+    for spacings in [0.25, 0.5, 1.0, 1.5, 2.0, 3.0] {
+        let x = 0.15 - spacings * 0.0125;
+        let probe = format!(r#"at: ({x}, 0.05), follows: "b""#);
+        for (component, exact) in [("xx", 0.0), ("yy", -load), ("xy", 0.0)] {
+            let field = format!("stress.{component}");
+            let found = strip_field(&field, body, poisson, 8, fields, &pressure, &probe);
+            assert!((found - exact).abs() < 1e-3 * load, "{component} at {x}: {found}");
+        }
+    }
+    for across in [2, 3] {
+        let probe = r#"at: (0.003, 0.05), follows: "b""#;
+        let found = strip_field("stress.yy", body, poisson, across, fields, &pressure, probe);
+        assert!((found / load + 1.0).abs() < 1e-3, "{across}: {found}");
+    }
+}
+
 /// A pressure and a traction on a round surface are found again, and a force on one particle is not taken
 /// for one.
 #[test]
