@@ -10,6 +10,8 @@ mod start;
 
 pub mod rest;
 
+mod roofs;
+
 pub mod advice;
 
 pub use sound_speed::estimate as estimate_sound_speeds;

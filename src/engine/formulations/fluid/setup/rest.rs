@@ -12,6 +12,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::endless;
+use super::roofs::Roofed;
 use super::spread::AllFluids;
 use super::start::StartPressure;
 use crate::formulations::fluid::walls::has_suction;
@@ -46,7 +47,7 @@ struct Layer {
 /// Everything that lines can meet.
 struct RestLines {
     layers: Vec<Layer>,
-    covers: Vec<Box<dyn Region>>,
+    covers: Vec<(BodyId, Box<dyn Region>)>,
     /// That which pressure balances.
     gravity: DVec3,
     spacing: f64,
@@ -57,13 +58,15 @@ struct RestLines {
 pub fn pressures(
     fluids: Vec<(BodyId, Option<Expression>)>,
     support: f64,
-    sim: &SimBuilder<'_>,
+    sim: &mut SimBuilder<'_>,
 ) -> Result<Vec<StartPressure>, SetupError> {
     let rest = RestLines::new(fluids, sim)?;
     let mut found: Vec<Vec<Option<f64>>> =
         (0..rest.layers.len()).map(|k| rest.below_surface(k, sim)).collect();
     if found.iter().flatten().any(Option::is_none) {
-        rest.spread(&mut found, support, sim)?;
+        let roofed = rest.spread(&mut found, support, sim)?;
+        let texts: Vec<String> = roofed.iter().filter_map(|piece| rest.pressed(piece, sim)).collect();
+        texts.into_iter().for_each(|text| sim.warn(text));
     }
     let held = rest.held(sim);
     let least = if has_suction(sim) { f64::NEG_INFINITY } else { 0.0 };
@@ -100,14 +103,20 @@ impl RestLines {
             shape.region(sim.dimension(), sim.folder(), "shape").ok()
         };
         let is_fluid = |id: BodyId| fluids.iter().any(|(fluid, _)| *fluid == id);
-        let covers = sim.bodies().iter().filter(|body| !is_fluid(body.id)).filter_map(|body| region(body.id));
-        let covers = covers.collect();
+        let covers = sim.bodies().iter().map(|body| body.id).filter(|id| !is_fluid(*id));
+        let covers = covers.filter_map(|id| Some((id, region(id)?))).collect();
         let spacing = fluids.first().map_or(0.0, |(id, _)| sim.body(*id).spacing);
         let layer =
             |(id, given)| Layer { id, region: region(id), density: sim.body(id).material.density, given };
         let layers: Vec<Layer> = fluids.into_iter().map(layer).collect();
         let gravity = balanced_gravity(&layers, spacing, sim)?;
         Ok(Self { covers, gravity, spacing, periodic: sim.periodic(), layers })
+    }
+
+    /// What is to be said of a piece of the fluids below a roof.
+    fn pressed(&self, piece: &Roofed, sim: &SimBuilder<'_>) -> Option<String> {
+        let reach = TOUCH * self.spacing;
+        piece.pressed(&self.covers, reach, self.spacing * self.gravity.length(), sim)
     }
 
     /// Whether each fluid touches a wall or a body, directly or by other fluids; so does one whose extent, or
@@ -119,7 +128,7 @@ impl RestLines {
             let sites = &sim.body(self.layers[k].id).sites;
             sites.par_iter().any(|site| region.distance(site.position) < TOUCH * self.spacing)
         };
-        let by_cover = |k: usize| self.covers.iter().any(|cover| touches(k, cover.as_ref()));
+        let by_cover = |k: usize| self.covers.iter().any(|(_, cover)| touches(k, cover.as_ref()));
         let mut held: Vec<bool> = (0..self.layers.len()).map(|k| !are_known || by_cover(k)).collect();
         for _ in 1..self.layers.len() {
             for k in 0..self.layers.len() {
@@ -163,7 +172,7 @@ impl RestLines {
                 }
                 p += self.layers[next].density * self.gravity.length() * step;
                 (k, at) = (next, beyond);
-            } else if self.covers.iter().any(|cover| cover.contains(beyond)) {
+            } else if self.covers.iter().any(|(_, cover)| cover.contains(beyond)) {
                 return None;
             } else {
                 return Some(p);
@@ -189,13 +198,14 @@ impl RestLines {
         length
     }
 
-    /// Gives particles without pressure that of those beside them.
+    /// Gives particles without pressure that of those beside them. The pieces without a free surface are
+    /// returned.
     fn spread(
         &self,
         found: &mut [Vec<Option<f64>>],
         support: f64,
         sim: &SimBuilder<'_>,
-    ) -> Result<(), SetupError> {
+    ) -> Result<Vec<Roofed>, SetupError> {
         let of_each = || (0..self.layers.len()).flat_map(|k| vec![k; found[k].len()]);
         let layers: Vec<usize> = of_each().collect();
         let all = AllFluids {
@@ -212,8 +222,17 @@ impl RestLines {
             layer.density * self.gravity.length() * to_top.unwrap_or(0.5 * self.spacing)
         };
         let mut pressure: Vec<Option<f64>> = found.iter().flatten().copied().collect();
-        all.spread(&mut pressure, support, below_top).map_err(|error| SetupError::internal(&error))?;
+        let pieces =
+            all.spread(&mut pressure, support, below_top).map_err(|error| SetupError::internal(&error))?;
+        let roofed = |piece: &Vec<usize>| {
+            let places = piece.iter().map(|&i| all.positions[i]).collect();
+            let pressures = piece.iter().filter_map(|&i| Some((i, pressure[i]?)));
+            let (top, _) = pressures.clone().min_by(|a, b| a.1.total_cmp(&b.1))?;
+            let largest = pressures.map(|(_, p)| p).fold(0.0, f64::max);
+            Some(Roofed { fluid: self.layers[layers[top]].id, density: all.densities[top], places, largest })
+        };
+        let roofed = pieces.iter().filter_map(roofed).collect();
         found.iter_mut().flatten().zip(pressure).for_each(|(found, pressure)| *found = pressure);
-        Ok(())
+        Ok(roofed)
     }
 }

@@ -17,7 +17,7 @@ pub struct AllFluids {
 
 impl AllFluids {
     /// Gives particles without pressure that of those beside them, from one to the next. Where a piece of the
-    /// fluids has none at all, its highest particle i has `below_top(i)`.
+    /// fluids has none at all, its highest particle i has `below_top(i)`; these pieces are returned.
     ///
     /// # Errors
     /// Particles that cannot be sorted into cells.
@@ -26,9 +26,10 @@ impl AllFluids {
         pressure: &mut [Option<f64>],
         support: f64,
         below_top: impl Fn(usize) -> f64,
-    ) -> Result<(), NeighborError> {
+    ) -> Result<Vec<Vec<usize>>, NeighborError> {
         let list = NeighborList::reference(Cloud::uniform(&self.positions, support), &self.periodic)?;
         self.spread_known(pressure, &list);
+        let mut pieces = Vec::new();
         while let Some(first) = pressure.iter().position(Option::is_none) {
             let rest: Vec<usize> = (first..pressure.len()).filter(|&i| pressure[i].is_none()).collect();
             pressure[first] = Some(0.0);
@@ -36,9 +37,11 @@ impl AllFluids {
             let piece = || rest.iter().filter_map(|&i| Some((i, pressure[i]?)));
             let Some((highest, least)) = piece().min_by(|a, b| a.1.total_cmp(&b.1)) else { break };
             let raise = below_top(highest) - least;
-            rest.iter().for_each(|&i| pressure[i] = pressure[i].map(|p| p + raise));
+            let piece: Vec<usize> = piece().map(|(i, _)| i).collect();
+            piece.iter().for_each(|&i| pressure[i] = pressure[i].map(|p| p + raise));
+            pieces.push(piece);
         }
-        Ok(())
+        Ok(pieces)
     }
 
     fn spread_known(&self, pressure: &mut [Option<f64>], list: &NeighborList) {

@@ -247,6 +247,33 @@ fn walls_that_pull_at_a_free_surface_are_warned_of() {
     assert!(!told(false));
 }
 
+/// A chamber full of water beside an open tank: the roof raised its pressure by 10 and 7 % of that at the
+/// floor, 10 and 20 deep, without a word. With suction in its own walls it has nothing to be told, and the
+/// open water beside it is not that of a wall that pulls.
+#[test]
+fn a_roof_that_does_not_pull_is_warned_of_and_one_that_pulls_is_not() {
+    let told = |chamber: &str, roof: &str| {
+        let mut sim = simulation(&format!(
+            r#"(dimension: Two, gravity: (0, -9.81), materials: {{"water": Fluid(density: 1000.0, sound_speed: 20.0)}},
+            bodies: [
+                (name: "in", material: "water", spacing: 0.02, formulation: Fluid, shape: Box(min: (0, 0), max: (0.2, 0.2))),
+                (name: "out", material: "water", spacing: 0.02, formulation: Fluid, shape: Box(min: (0.32, 0), max: (0.6, 0.2))),
+                (name: "chamber", material: "wall", spacing: 0.02, formulation: Wall(slip: Free{chamber}),
+                 shape: Difference(Box(min: (-0.06, -0.06), max: (0.26, 0.26)), Box(min: (0, 0), max: (0.2, {roof})))),
+                (name: "tank", material: "wall", spacing: 0.02, formulation: Wall(slip: Free),
+                 shape: Difference(Box(min: (0.26, -0.06), max: (0.66, 0.3)), Box(min: (0.32, 0), max: (0.6, 1)))),
+            ], time: (end: 0.02))"#
+        ));
+        sim.run(|_| true).expect("a run");
+        let has = |part: &str| sim.warnings().iter().any(|text| text.contains(part));
+        [has("`in` fills a space up to its roof"), has("leave `suction` out")]
+    };
+    assert_eq!(told("", "0.2"), [true, false]);
+    assert_eq!(told(", suction: true", "0.2"), [false, false]);
+    assert_eq!(told("", "1"), [false, false]);
+    assert_eq!(told(", suction: true", "1"), [false, true]);
+}
+
 /// A light disc rises in a closed tank: walls that do not pull give and take several hundredths of what
 /// gravity does, and nobody was told.
 #[test]

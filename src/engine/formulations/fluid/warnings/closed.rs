@@ -68,7 +68,7 @@ impl ClosedWatch {
             return None;
         }
         Some(format!(
-            "walls and bodies have taken {} of the work on {}, without a free surface, by {}, {:.0} % of what has compressed it: its pressure is too low by about as much, \
+            "walls and bodies have taken {} of the work on {}, without a free surface, by {}, {:.0} % of what has compressed it: its pressure is wrong by about as much, \
              because the fluid beside them is compressed by half of their motion{}",
             quantity(taken, "J"),
             named(cloud, step),
@@ -117,7 +117,8 @@ fn pulling_at_a_surface(
     scratch: &mut Vec<Option<f64>>,
     step: &Step<'_>,
 ) -> Option<String> {
-    (!is_closed(cloud, scratch)).then(|| {
+    let pulled = beside_suction(cloud);
+    (!are_closed(cloud, |i| pulled[i], scratch)).then(|| {
         format!(
             "walls or bodies with suction bound {}, with a free surface at {}: levels are 2 to 4 % too high there, and forces of impacts up to half too large; leave `suction` out",
             named(cloud, step),
@@ -134,14 +135,45 @@ pub(super) fn named(cloud: &FlowCloud, step: &Step<'_>) -> String {
     }
 }
 
+/// The fluid particles that are joined, by others, to walls or bodies with suction.
+fn beside_suction(cloud: &FlowCloud) -> Vec<bool> {
+    let near = |i: usize| {
+        let is_near = move |j: &usize| {
+            let (own, other) = (&cloud.records()[i], &cloud.records()[*j]);
+            let squared = cloud.offset(own.position(), other.position()).length_squared();
+            other.volume() > 0.0 && squared < cloud.kernel.support * cloud.kernel.support
+        };
+        cloud.near_row(i).iter().map(|&j| j as usize).filter(is_near)
+    };
+    let pulls = |j: usize| j >= cloud.fluid && cloud.group_of(j).has_suction();
+    let flows = |i: &usize| cloud.records()[*i].volume() > 0.0;
+    let mut next: Vec<usize> = (0..cloud.fluid).filter(flows).filter(|&i| near(i).any(pulls)).collect();
+    let mut found = vec![false; cloud.fluid];
+    next.iter().for_each(|&i| found[i] = true);
+    while let Some(i) = next.pop() {
+        for j in near(i).filter(|&j| j < cloud.fluid) {
+            if !std::mem::replace(&mut found[j], true) {
+                next.push(j);
+            }
+        }
+    }
+    found
+}
+
 /// Whether no fluid has a free surface.
 pub(super) fn is_closed(cloud: &FlowCloud, scratch: &mut Vec<Option<f64>>) -> bool {
+    are_closed(cloud, |_| true, scratch)
+}
+
+/// Whether the particles of the fluids that count have no free surface.
+fn are_closed(cloud: &FlowCloud, counts: impl Fn(usize) -> bool, scratch: &mut Vec<Option<f64>>) -> bool {
     cloud.fluids().all(|rows| {
         scratch.clear();
         scratch.resize(rows.len(), None);
         cloud.for_each_row(rows.start, scratch, &mut RowSums::default(), &filling(cloud));
-        let flows = cloud.records()[rows].iter().filter(|record| record.volume() > 0.0).count();
-        let outside = flows.saturating_sub(scratch.iter().flatten().count());
+        let counted = || rows.clone().zip(&*scratch).filter(|(i, _)| counts(*i));
+        let flows = counted().filter(|(i, _)| cloud.records()[*i].volume() > 0.0).count();
+        let outside = flows.saturating_sub(counted().filter(|(_, filling)| filling.is_some()).count());
         let side = (flows as f64).powf(if cloud.plane { 1.0 / 2.0 } else { 2.0 / 3.0 });
         outside as f64 <= SURFACE * side
     })

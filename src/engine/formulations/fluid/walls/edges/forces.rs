@@ -73,7 +73,7 @@ impl FlowCloud {
     }
 
     /// The group that a row belongs to.
-    pub(super) fn group_of(&self, row: usize) -> &Group {
+    pub(in crate::formulations::fluid) fn group_of(&self, row: usize) -> &Group {
         &self.groups[self.groups.partition_point(|group| group.cloud.end <= row)]
     }
 
