@@ -21,7 +21,7 @@ pub use formulation::{Rigid, Rotation};
 pub(crate) use inertia::sphere_of;
 pub use nodes::{Feature, Nodes, RigidNode, Round};
 pub use outline::Rim;
-pub use prescribed::PrescribedAcceleration;
+pub use prescribed::RigidAcceleration;
 pub use rotation::Inertia;
 pub(crate) use systems::{is_rigid, take_out};
 pub use wrench::Wrench;

@@ -1,25 +1,25 @@
-//! Prescribed part of the acceleration of a rigid body. It does not depend on the forces of the step, so that
-//! the pressure of a fluid on the body can include it.
+//! Acceleration of a rigid body, as the pressure of a fluid on it includes it: the prescribed part, which
+//! does not depend on the forces of the step, and what is known of the rest.
 
 use glam::DVec3;
 
 use super::body::RigidBody;
 use super::constraint::RotationConstraint;
 
-/// Prescribed acceleration of the points of a rigid body in a step.
+/// Acceleration of the points of a rigid body in a step.
 #[derive(Clone, Copy, Debug)]
-pub struct PrescribedAcceleration {
+pub struct RigidAcceleration {
     /// Centre of mass, m.
     center: DVec3,
-    /// Acceleration of the centre along the driven axes, m/s2.
+    /// Acceleration of the centre, m/s2.
     linear: DVec3,
-    /// Angular acceleration, 1/s2, and angular velocity, 1/s, of a driven rotation.
+    /// Angular acceleration, 1/s2, and the angular velocity that turns its points, 1/s.
     angular: DVec3,
     spin: DVec3,
 }
 
-impl PrescribedAcceleration {
-    /// Prescribed acceleration of the point at `place`, m/s2.
+impl RigidAcceleration {
+    /// Acceleration of the point at `place`, m/s2.
     #[inline]
     pub fn at(&self, place: DVec3) -> DVec3 {
         let arm = place - self.center;
@@ -28,15 +28,21 @@ impl PrescribedAcceleration {
 }
 
 impl RigidBody {
-    /// The prescribed acceleration in this step; none where no motion is prescribed.
-    pub fn prescribed_acceleration(&self) -> Option<PrescribedAcceleration> {
-        let turns = matches!(self.constraint.turning, RotationConstraint::Driven(_));
-        if self.state.gone || !(turns || self.constraint.free_axes() != DVec3::ONE) {
-            return None;
-        }
-        let [linear, angular] = self.gained;
-        let spin = if turns { self.state.angular_velocity } else { DVec3::ZERO };
-        Some(PrescribedAcceleration { center: self.state.center, linear, angular, spin })
+    /// The acceleration whose part of the centre, m/s2, and of the rotation, 1/s2, are `gains`.
+    pub fn acceleration(&self, [linear, angular]: [DVec3; 2]) -> RigidAcceleration {
+        let (center, spin) = (self.state.center, self.state.angular_velocity);
+        RigidAcceleration { center, linear, angular, spin }
+    }
+
+    /// What no condition prescribes of a motion of the centre and the rotation.
+    pub fn free_part(&self, [linear, angular]: [DVec3; 2]) -> [DVec3; 2] {
+        let turns = !self.constraint.turns_as_prescribed();
+        [self.constraint.free_axes() * linear, if turns { angular } else { DVec3::ZERO }]
+    }
+
+    /// The prescribed part of the acceleration of the centre, m/s2, and of the rotation, 1/s2, in this step.
+    pub fn driven_part(&self) -> [DVec3; 2] {
+        if self.state.gone { [DVec3::ZERO; 2] } else { self.gained }
     }
 
     /// Stores the changes of its velocities by prescribed motions over `half` a step, s; `before` are the

@@ -13,8 +13,8 @@ use crate::formulations::fluid::passes::{Compression, FLUID_FORCE, FlowForce, re
 use crate::formulations::fluid::rotation::Spin;
 use crate::formulations::fluid::setup::advice;
 use crate::formulations::fluid::walls::{
-    EdgeForces, EdgeMotion, GapPressure, PreviousVelocity, RangeShortfall, Repulsion, WallCompression,
-    WallEnds, WallShapes, WallState,
+    EdgeForces, EdgeMotion, GapPressure, PreviousVelocity, RangeShortfall, Repulsion, SeenMotions,
+    WallCompression, WallEnds, WallShapes, WallState,
 };
 use crate::formulations::fluid::warnings::watch;
 use crate::pair::{BodyTerms, PhaseTerms, add_work_systems};
@@ -211,7 +211,8 @@ fn add_state(sim: &mut SimBuilder<'_>, fluid: PhaseId, account: Option<String>) 
 /// Adds the pressure of the boundary particles, and the force on them.
 fn add_boundaries(sim: &mut SimBuilder<'_>, groups: &[Group], boundaries: Vec<PhaseId>, spin: bool) {
     if !boundaries.is_empty() {
-        let state = WallState { gravity: sim.gravity(), beside: Vec::new() };
+        let state =
+            WallState { gravity: sim.gravity(), beside: Vec::new(), motions: SeenMotions::new(groups, sim) };
         sim.add_system(
             System::new(Stage::Boundary, WALL_PRESSURE, state)
                 .on_phases(boundaries.iter().copied())

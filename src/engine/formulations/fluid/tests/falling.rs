@@ -1,7 +1,7 @@
 //! Water that has left its vessel and falls on.
 
 use super::{column, simulation};
-use crate::world::Position;
+use crate::world::{Position, Velocity};
 
 /// A drop of 16 particles beside a shelf, which it falls past for 1.2 s, to 11.8 m/s.
 fn drop(domain: &str) -> String {
@@ -55,4 +55,29 @@ fn what_falls_beside_a_free_body_is_named_if_there_is_a_wall() {
     assert!(is_named(
         r#"(name: "shelf", material: "wall", shape: Box(min: (0, 0), max: (0.4, 0.2)), spacing: 0.05, formulation: Wall())"#
     ));
+}
+
+/// A container falls with its water, which it pushed off at 0.1 sqrt(g h), 10 deep, when its pressure was
+/// that of a wall at rest.
+#[test]
+fn a_container_in_free_fall_keeps_its_water() {
+    let mut sim = simulation(
+        r#"(dimension: Two, gravity: (0.0, -9.81),
+            materials: {"water": Fluid(density: 1000.0, sound_speed: 20.0), "iron": NeoHookean(density: 2000.0, young: 1.0e7, poisson: 0.3)},
+            bodies: [
+                (name: "water", material: "water", shape: Box(min: (0, 0), max: (0.4, 0.2)), spacing: 0.02, formulation: Fluid(pressure: 0)),
+                (name: "box", material: "iron", shape: Difference(Box(min: (-0.08, -0.08), max: (0.48, 0.3)), Box(min: (0, 0), max: (0.4, 1))),
+                 spacing: 0.02, formulation: Rigid()),
+            ],
+            time: (end: 0.1))"#,
+    );
+    sim.run(|_| true).expect("a run");
+    let fall = |body: usize| {
+        let velocities = column::<Velocity>(&sim, body);
+        velocities.iter().map(|velocity| velocity.0.y).sum::<f64>() / velocities.len() as f64
+    };
+    // Both fall at g t.
+    for body in 0..2 {
+        assert!((fall(body) + 0.981).abs() < 0.01 * (9.81_f64 * 0.2).sqrt(), "{body}: {}", fall(body));
+    }
 }

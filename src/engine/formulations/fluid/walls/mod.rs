@@ -18,6 +18,8 @@ mod wall_blocks;
 
 mod wall_state;
 
+mod own_motion;
+
 mod edges;
 
 mod ends;
@@ -27,6 +29,7 @@ mod gaps;
 pub use edges::{EdgeForces, EdgeMotion, WallShapes};
 pub use ends::WallEnds;
 pub use gaps::GapPressure;
+pub use own_motion::SeenMotions;
 pub use repulsion::{RangeShortfall, Repulsion};
 pub use surface_distance::apart;
 pub use wall::{PreviousVelocity, Slip, Wall, WallBody, has_suction};

@@ -3,13 +3,14 @@
 
 use glam::DVec3;
 
+use super::own_motion::SeenMotions;
 use super::wall::PreviousVelocity;
 use super::wall_blocks::WallBlocks;
 use super::wall_pressure::{FluidBeside, WallPressure};
 use crate::formulations::fluid::cloud::{BoundarySurface, FlowCloud, Group, Role};
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::parallel::{Lanes4, for_each_block, for_each_own_block, own_rows};
-use crate::rigid::{PrescribedAcceleration, RigidBodies, RigidBody};
+use crate::rigid::{RigidAcceleration, RigidBodies};
 use crate::schedule::{Run, Step, StepError};
 use crate::world::Pressure;
 
@@ -18,6 +19,7 @@ pub struct WallState {
     /// Acceleration of gravity, m/s2.
     pub gravity: DVec3,
     pub beside: Vec<FluidBeside>,
+    pub motions: SeenMotions,
 }
 
 type MovedRows<'a> = (&'a mut [FlowParticle], &'a [FluidBeside]);
@@ -44,16 +46,17 @@ impl Run for WallState {
             });
         }
         let is_local = cloud.is_local();
-        let bodies = step.resources.try_get::<RigidBodies>();
+        let elapsed = self.motions.elapsed(&step.clock);
+        if let Some(bodies) = step.resources.try_get::<RigidBodies>() {
+            self.motions.follow(&bodies, elapsed);
+        }
         let FlowCloud { groups, records, fluid, .. } = &mut *cloud;
         for group in groups {
             let Role::Boundary(surface) = &group.role else { continue };
             let beside = &self.beside[group.cloud.start - *fluid..group.cloud.end - *fluid];
-            let boundary = BoundaryStep { surface, gravity: self.gravity, dt: step.clock.dt };
+            let boundary = BoundaryStep { surface, gravity: self.gravity, elapsed };
             if surface.moved {
-                let is_own = |body: &&RigidBody| body.id == group.body;
-                let body = bodies.as_ref().and_then(|bodies| bodies.iter().find(is_own));
-                let known = body.and_then(RigidBody::prescribed_acceleration);
+                let known = self.motions.of(group.body);
                 let rows = (&mut records[group.cloud.clone()], beside);
                 for_each_block(rows, &mut Vec::new(), &|_, rows| boundary.apply_to_solid(known, rows));
                 continue;
@@ -79,6 +82,14 @@ impl Run for WallState {
         pack(&mut cloud);
         Ok(())
     }
+
+    fn save(&self) -> Vec<u8> {
+        self.motions.save()
+    }
+
+    fn restore(&mut self, state: &[u8]) -> bool {
+        self.motions.restore(state)
+    }
 }
 
 /// Packs the states of boundaries, and gets those of other ranks.
@@ -100,15 +111,16 @@ fn pack(cloud: &mut FlowCloud) {
 struct BoundaryStep<'a> {
     surface: &'a BoundarySurface,
     gravity: DVec3,
-    dt: f64,
+    /// Time since the velocities in the step before, s.
+    elapsed: f64,
 }
 
 impl BoundaryStep<'_> {
     fn apply(&self, (records, pressure, previous, beside): Rows<'_>) {
-        let Self { surface, gravity, dt } = *self;
+        let Self { surface, gravity, elapsed } = *self;
         for (k, record) in records.iter_mut().enumerate() {
             let v = record.velocity();
-            let acceleration = if dt > 0.0 { (v - previous[k].0) / dt } else { DVec3::ZERO };
+            let acceleration = if elapsed > 0.0 { (v - previous[k].0) / elapsed } else { DVec3::ZERO };
             previous[k] = PreviousVelocity(v);
             let fluid = &beside[k];
             let mut p = fluid.pressure - (gravity - acceleration).dot(fluid.moment);
@@ -122,11 +134,10 @@ impl BoundaryStep<'_> {
         }
     }
 
-    /// The acceleration of a body that the fluid moves is left out: it would act on itself one step later, as
-    /// a mass that is added explicitly, and a light body would not stand it. The resulting error falls with
-    /// the spacing. The prescribed part of it, `known`, does not depend on the fluid, and counts as that of
-    /// a wall.
-    fn apply_to_solid(&self, known: Option<PrescribedAcceleration>, (records, beside): MovedRows<'_>) {
+    /// The acceleration of a deformable body that the fluid moves is left out: it would act on itself one
+    /// step later, as a mass that is added explicitly, and a light body would not stand it. The resulting
+    /// error falls with the spacing. That of a rigid body is `known`, from the steps before (`own_motion`).
+    fn apply_to_solid(&self, known: Option<RigidAcceleration>, (records, beside): MovedRows<'_>) {
         let Self { surface, gravity, .. } = *self;
         for (record, fluid) in records.iter_mut().zip(beside) {
             let v = record.velocity();
