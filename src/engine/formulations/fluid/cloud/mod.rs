@@ -58,5 +58,5 @@ pub use shared::{
     COMPRESSION_RATES, EDGES, ENDS, FLOW_LOADS, FLOW_RECORDS, GAP_FORCES, PLACES_BEFORE, REPELLED, SPINS,
 };
 pub use surroundings::smallest_eigenvalue;
-pub use viscosities::{NONE, PLAIN, Viscosities, WITH_SPIN};
+pub use viscosities::{NONE, PLAIN, Viscosities, WITH_SPIN, is_viscous};
 pub use wall_end::WallEnd;

@@ -1,6 +1,6 @@
 //! Viscosities between the bodies of a flow.
 
-use super::group::{Group, Role};
+use super::group::{FluidState, Group, Role};
 
 /// Kinematic viscosity, in units of c_0 h, above which a fluid is viscous and friction is corrected by the
 /// spin: a flow at a tenth of the speed of sound has larger other losses below it.
@@ -29,14 +29,21 @@ pub struct Viscosities {
     pub is_viscous: bool,
 }
 
+/// Whether a fluid is viscous at a smoothing length `h`, m.
+pub fn is_viscous(state: &FluidState, h: f64) -> bool {
+    reaches(state, h * VISCOUS)
+}
+
+/// Whether the kinematic viscosity over c_0 is above `least`, m.
+fn reaches(state: &FluidState, least: f64) -> bool {
+    state.viscosity > least * state.density * state.sound_speed
+}
+
 impl Viscosities {
     /// Those of a flow of smoothing length `h`, m; `turns` says whether a boundary to which fluids stick may.
     pub fn new(groups: &[Group], h: f64, turns: bool) -> Self {
         let of = |a: &Group| groups.iter().map(|b| between(&a.role, &b.role)).collect::<Vec<f64>>();
-        let reaches = |least: f64| {
-            let mut fluids = groups.iter().filter_map(Group::fluid);
-            fluids.any(|state| state.viscosity > least * state.density * state.sound_speed)
-        };
+        let reaches = |least: f64| groups.iter().filter_map(Group::fluid).any(|state| reaches(state, least));
         let least = h * if turns { VISCOUS_WHERE_TURNED } else { VISCOUS };
         Self {
             values: groups.iter().flat_map(of).collect(),

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::closed::is_closed;
-use crate::formulations::fluid::cloud::{FlowCloud, Group};
+use crate::formulations::fluid::cloud::{FlowCloud, Group, is_viscous};
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::notation::quantity;
 use crate::parallel::{BlockSum, sum_over_blocks};
@@ -20,10 +20,10 @@ const FRAMES: u32 = 3;
 /// The plugin that damps the noise.
 const REMEDY: &str = "artificial_viscosity";
 
-/// Watches the pressure of every fluid without viscosity.
+/// Watches the pressure of every fluid that is not viscous; `Unevenness` watches the particles of the others.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct TensionWatch {
-    /// Frames for which each group was in tension; none for fluids with friction.
+    /// Frames for which each group was in tension; none for those that are not watched.
     frames: Vec<Option<u32>>,
 }
 
@@ -66,18 +66,21 @@ impl Tension {
 }
 
 impl TensionWatch {
-    /// A watch over the fluids of `groups` that have neither viscosity nor the plugin.
+    /// A watch over the fluids of `groups` without the plugin.
     pub fn new(groups: &[Group], sim: &SimBuilder<'_>) -> Self {
         let is_damped = |group: &Group| sim.scene().has_plugin(group.body.0, REMEDY);
-        let watched =
-            |group: &Group| group.fluid().is_some_and(|fluid| fluid.viscosity == 0.0) && !is_damped(group);
+        let watched = |group: &Group| group.fluid().is_some() && !is_damped(group);
         Self { frames: groups.iter().map(|group| watched(group).then_some(0)).collect() }
     }
 
     /// Checks all fluids.
     pub fn look(&mut self, cloud: &FlowCloud, scratch: &mut Vec<Option<f64>>, step: &mut Step<'_>) {
+        let h = cloud.kernel.smoothing_length();
         for (group, frames) in cloud.groups.iter().zip(&mut self.frames) {
             let Some(count) = frames else { continue };
+            if group.fluid().is_some_and(|fluid| is_viscous(fluid, h)) {
+                continue;
+            }
             let tension = Tension::of(&cloud.records()[group.cloud.clone()]);
             if tension.share() > SHARE {
                 *count += 1;
@@ -89,7 +92,7 @@ impl TensionWatch {
             }
             *frames = None;
             step.warnings.push(format!(
-                "`{}` has been in tension since about {}, {:.0} % of it, down to {}, and has no friction: its particles pair, and it falls apart; give it \
+                "`{}` has been in tension since about {}, {:.0} % of it, down to {}, and has hardly any friction: its particles pair, and it falls apart; give it \
                  `plugins: [density_diffusion(), particle_shifting(), {REMEDY}(alpha: 0.02, beta: 0.0)]`, or, in a closed flow, a pressure at the start that keeps it above zero, `Fluid(pressure: ...)`",
                 step.world.body(group.body).name,
                 quantity(step.clock.time, "s"),
