@@ -316,8 +316,14 @@ fn a_far_end_is_allowed_and_the_number_of_steps_is_told() {
     assert!(text.contains("about 1.4e12 steps"), "{text}");
     let run = meshless(folder.path(), &[&["run", "beam.ron", "--steps", "2"], &far[..]].concat());
     assert!(run.status.success(), "{}", err(&run));
-    let never = meshless(folder.path(), &["check", "beam.ron", "--set", "time.end=1e90"]);
-    assert!(err(&never).contains("must take fewer than 1e15 steps, found 1.4"), "{}", err(&never));
+    for command in [&["check"][..], &["run", "--force"]] {
+        let never = [command, &["beam.ron", "--set", "time.end=1e90"]].concat();
+        let never = meshless(folder.path(), &never);
+        let text = err(&never);
+        assert!(text.contains("must take fewer than 1e15 steps, found 1.4"), "{text}");
+        assert!(text.contains("beam.ron:") && text.contains("given by `--set time.end=1e90`"), "{text}");
+        assert_eq!(never.status.code(), Some(2), "{text}");
+    }
 }
 
 #[test]

@@ -62,10 +62,10 @@ struct CheckReport<'a> {
 pub fn execute(arguments: &CheckArguments, registry: &Registry) -> Result<(), CommandFailure> {
     let (scene, source) = arguments.scene.load(registry)?;
     let mut sim = assembly::build(&scene, &source, registry)?;
-    sim.start().map_err(|error| CommandFailure::Run(error.to_string()))?;
+    sim.start().map_err(|error| CommandFailure::of_run(&error, &source))?;
     let bodies = BodyReport::all(&scene, &sim, registry)?;
     let memory = memory(&sim);
-    let trial = TrialSteps::run(&mut sim).inspect_err(|_| warn(&sim))?;
+    let trial = TrialSteps::run(&mut sim, &source).inspect_err(|_| warn(&sim))?;
     let notes = review::notes(&scene, &bodies, &sim, &trial);
     if arguments.json {
         say(&json(&scene, &sim, &bodies, &trial, &notes)?);

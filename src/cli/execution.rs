@@ -111,6 +111,11 @@ impl Execution {
         if let Err(error) = &steps {
             end_if_alone_with(error);
         }
+        if let Some(failure) =
+            steps.as_ref().err().and_then(|error| CommandFailure::of_scene(error, &self.source))
+        {
+            return Err(failure);
+        }
         let failed_state = steps.is_err().then(|| self.keep_failed_state()).flatten();
         let finished = self.sim.finish();
         if let Err(error) = &finished {

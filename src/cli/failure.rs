@@ -2,7 +2,8 @@
 
 #[cfg(feature = "rerun")]
 use meshless_engine::record::WriteError;
-use meshless_engine::scene::SceneError;
+use meshless_engine::scene::{SceneError, Source};
+use meshless_engine::simulation::RunError;
 use thiserror::Error;
 
 use super::interrupt::exit_code;
@@ -33,6 +34,17 @@ pub enum CommandFailure {
 }
 
 impl CommandFailure {
+    /// The failure of a run that a value of its scene makes impossible; none for another error.
+    pub(super) fn of_scene(error: &RunError, source: &Source) -> Option<Self> {
+        let problem = error.problem()?;
+        Some(Self::Scene(SceneError { source: source.clone(), problems: vec![problem] }))
+    }
+
+    /// The failure of a run of a scene.
+    pub(super) fn of_run(error: &RunError, source: &Source) -> Self {
+        Self::of_scene(error, source).unwrap_or_else(|| Self::Run(error.to_string()))
+    }
+
     pub(super) fn report(&self) {
         match self {
             Self::Told(_) => {}

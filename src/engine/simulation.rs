@@ -8,7 +8,7 @@ use crate::notation::{number, quantity};
 use crate::ranks::{self, Cut};
 use crate::record::probe::ResolvedProbe;
 use crate::record::{Output, StateHash};
-use crate::scene::{self, Scene, Source};
+use crate::scene::{self, Problem, Scene, Source};
 use crate::schedule::{
     Clock, Ledger, Limit, Resources, Schedule, Shared, Stage, Step, StepError, StepPart, TimeStepLimits,
 };
@@ -130,6 +130,14 @@ impl RunError {
     /// Whether the output of the run could not be written: of several ranks, only the first finds that out.
     pub fn is_of_output(&self) -> bool {
         matches!(self, Self::Checkpoint(_) | Self::Record(_) | Self::Step(StepError::Output(_)))
+    }
+
+    /// The problem of the scene that the error comes from; none if the values of the scene could be right.
+    pub fn problem(&self) -> Option<Problem> {
+        match self {
+            Self::TooManySteps { .. } => Some(Problem::at_path("time.end", self.to_string())),
+            _ => None,
+        }
     }
 }
 

@@ -7,9 +7,11 @@ use std::sync::Arc;
 use super::Problem;
 use super::decode::{decode, expression_problem};
 use super::expression::{constant, is_reserved, words};
+use super::literal::refused;
 use super::symbols::Symbols;
 use super::table::Table;
 use super::tree::{Node, NodeKind};
+use crate::notation::number;
 
 /// The names that the scene `root` defines. Files of tables are relative to `folder`.
 ///
@@ -75,16 +77,19 @@ fn evaluate(parameters: &[Entry<'_>], problems: &mut Vec<Problem>) -> BTreeMap<S
                 return true;
             }
             let value = match &node.kind {
-                NodeKind::Number { value, .. } if value.is_finite() => Ok(*value),
+                NodeKind::Number { value, .. } if let Some(required) = refused(*value) => {
+                    Err(Problem::at_span(
+                        node.span.clone(),
+                        format!("a number must be {required}, found {}", number(*value)),
+                    ))
+                }
+                NodeKind::Number { value, .. } => Ok(*value),
                 NodeKind::Text { value, .. } => {
                     constant(value, &symbols).map_err(|error| expression_problem(node, &error))
                 }
                 _ => Err(Problem::at_span(
                     node.span.clone(),
-                    format!(
-                        "expected a finite number or an expression in double quotes, found {}",
-                        node.describe()
-                    ),
+                    format!("expected a number or an expression in double quotes, found {}", node.describe()),
                 )),
             };
             // A bad parameter counts as known, so that it is reported once.

@@ -146,6 +146,16 @@ impl Reader<'_> {
     }
 }
 
+/// Why a run cannot compute with a value, as "must be ..."; none if it can. Numbers whose squares are
+/// infinite are refused too, as energies are sums of squares.
+pub(super) fn refused(value: f64) -> Option<&'static str> {
+    match value.abs() {
+        size if size <= 1e150 => None,
+        size if size.is_finite() => Some("between -1e150 and 1e150"),
+        _ => Some("finite"),
+    }
+}
+
 /// A number of RON: decimal with `_` between digits, or hexadecimal, octal, binary.
 fn parse_number(text: &str) -> Option<NodeKind> {
     let unsigned = text.trim_start_matches(['+', '-']);

@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use meshless_engine::notation::{count, quantity, quantity_to};
+use meshless_engine::scene::Source;
 use meshless_engine::simulation::Simulation;
 
 use crate::cli::failure::CommandFailure;
@@ -30,12 +31,12 @@ fn steps(number: f64) -> String {
 
 impl TrialSteps {
     /// Does the steps; the simulation has started.
-    pub fn run(sim: &mut Simulation) -> Result<Self, CommandFailure> {
+    pub fn run(sim: &mut Simulation, source: &Source) -> Result<Self, CommandFailure> {
         let limit = sim.limit().map_or_else(|| "nothing".to_owned(), |limit| limit.by.clone());
         let begun = Instant::now();
         let mut dt = 0.0;
         while !sim.is_finished() && sim.clock().step < TRIAL_STEPS && begun.elapsed() < TRIAL {
-            sim.step().map_err(|error| CommandFailure::Run(error.to_string()))?;
+            sim.step().map_err(|error| CommandFailure::of_run(&error, source))?;
             if sim.clock().step == 1 {
                 dt = sim.clock().dt;
             }

@@ -76,7 +76,7 @@ fn errors_stand_at_their_place() {
         ("control(value: (r#\"sin(x,y)\"#, 0))", "`sin` takes one argument, found 2", "sin"),
         ("control(value: (\"x\"))", "expected an entry for each axis", "(\"x\")"),
         ("control(value: (x, 1))", "expected a number or an expression in double quotes, found `x`", "x, 1"),
-        ("control(alpha: NaN)", "expected a finite number", "NaN"),
+        ("control(alpha: NaN)", "must be finite, found NaN", "NaN"),
     ] {
         let (source, item) = plugin(text);
         let problems = item.parse::<Control>().expect_err(text);

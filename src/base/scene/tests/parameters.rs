@@ -80,7 +80,7 @@ fn faults_point_at_their_place() {
         ("\"a\": \"2*q\"", "1", "unknown name `q`", "q"),
         ("\"a\": \"2*t\"", "1", "must be constant, found `t`", "t"),
         ("\"a\": \"1/0\"", "1", "must be finite, found inf", "1/0"),
-        ("\"a\": true", "1", "expected a finite number or an expression", "true"),
+        ("\"a\": true", "1", "expected a number or an expression", "true"),
         ("\"a\": 1", "\"2*aa\"", "unknown name `aa`", "aa"),
         ("\"a\": 1", "\"2*x\"", "must be constant, found `x`", "x"),
         ("\"a\": 1", "a", "expected a number or an expression in double quotes, found `a`", "a"),
