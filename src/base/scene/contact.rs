@@ -1,5 +1,7 @@
 //! Contact between two bodies.
 
+use std::collections::BTreeSet;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -66,10 +68,10 @@ impl Contact {
         };
         let (first, second): (Vec<&str>, Vec<&str>) = (named(&self.between.0), named(&self.between.1));
         let is_itself = self.between.0 == self.between.1 && !self.between.0.ends_with(ANY);
-        let mut pairs = Vec::new();
+        let (mut pairs, mut known) = (Vec::new(), BTreeSet::new());
         for &a in &first {
             for &b in &second {
-                if (a != b || is_itself) && !pairs.contains(&(b, a)) {
+                if (a != b || is_itself) && known.insert((a.min(b), a.max(b))) {
                     pairs.push((a, b));
                 }
             }

@@ -72,6 +72,11 @@ impl Motions {
         DVec3::from([0, 1, 2].map(value))
     }
 
+    /// Whether nothing changes the velocity of a body until it touches another one.
+    fn is_steady(&self, body: &BodyPlan, sim: &SimBuilder<'_>) -> bool {
+        !is_held(sim, &self.driven, body) && self.fall(body) == DVec3::ZERO
+    }
+
     /// Acceleration of a body by nothing but gravity, m/s2.
     fn fall(&self, body: &BodyPlan) -> DVec3 {
         if self.falling.contains(body.id) { self.gravity } else { DVec3::ZERO }
@@ -97,7 +102,8 @@ impl Motions {
         let all = |body: &BodyPlan| (0..body.sites.len() as u32).collect::<Vec<u32>>();
         let (of_a, of_b) = (all(a), all(b));
         let (of_a, of_b) = (self.of_face(a, &of_a, sim), self.of_face(b, &of_b, sim));
-        let times = (0..=TIMES).map(|k| self.end * f64::from(k) / f64::from(TIMES));
+        let last = if [a, b].into_iter().all(|body| self.is_steady(body, sim)) { 0 } else { TIMES };
+        let times = (0..=last).map(|k| self.end * f64::from(k) / f64::from(TIMES));
         let relative = times.map(|t| of_a(t) - of_b(t));
         let fastest = relative.max_by(|v, w| v.length_squared().total_cmp(&w.length_squared()));
         fastest.filter(|v| v.is_finite()).unwrap_or_default().normalize_or_zero()
@@ -185,13 +191,19 @@ fn falling(sim: &SimBuilder<'_>, driven: &BTreeMap<BodyId, [Option<MotionOfPlace
         *touching.entry(contact.between.0).or_default() += 1;
         *touching.entry(contact.between.1).or_default() += 1;
     }
-    let is_held = |body: &BodyPlan| {
-        let rows = body.rows.start as u32..body.rows.end as u32;
-        sim.prescribed.range((body.phase, rows.start)..(body.phase, rows.end)).next().is_some()
-            || driven.contains_key(&body.id)
-    };
-    let falls = |body: &&BodyPlan| touching.get(&body.name) == Some(&1) && !is_held(body);
+    let falls = |body: &&BodyPlan| touching.get(&body.name) == Some(&1) && !is_held(sim, driven, body);
     BodySet::new(sim.bodies().iter().filter(falls).map(|body| body.id))
+}
+
+/// Whether a condition prescribes the motion of a body, or of some of its particles.
+fn is_held(
+    sim: &SimBuilder<'_>,
+    driven: &BTreeMap<BodyId, [Option<MotionOfPlace>; 3]>,
+    body: &BodyPlan,
+) -> bool {
+    let rows = body.rows.start as u32..body.rows.end as u32;
+    sim.prescribed.range((body.phase, rows.start)..(body.phase, rows.end)).next().is_some()
+        || driven.contains_key(&body.id)
 }
 
 /// Whether a body is one whose approach is known.

@@ -20,7 +20,13 @@ const ON_FACE: f64 = 1e-6;
 
 /// One problem for every pair of bodies that overlap. Files of shapes are looked for in `folder`.
 pub(super) fn problems(bodies: &[BodyPlan], scene: &Scene, folder: &Path) -> Vec<Problem> {
-    let contacts: Vec<Contact> = contact_pairs(scene, bodies).map(|(_, contact)| contact).collect();
+    let numbers: BTreeMap<&str, usize> = bodies.iter().map(|body| (&*body.name, body.id.0)).collect();
+    let between = |(_, contact): (usize, Contact)| {
+        let (a, b) = (numbers.get(&*contact.between.0)?, numbers.get(&*contact.between.1)?);
+        Some(((*a.min(b), *a.max(b)), contact))
+    };
+    let contacts: BTreeMap<(usize, usize), Contact> =
+        contact_pairs(scene, bodies).filter_map(between).collect();
     let owners: Vec<usize> = bodies.iter().flat_map(|body| vec![body.id.0; body.sites.len()]).collect();
     if bodies.len() < 2 {
         return Vec::new();
@@ -41,11 +47,7 @@ pub(super) fn problems(bodies: &[BodyPlan], scene: &Scene, folder: &Path) -> Vec
                 continue;
             }
             let (first, second) = (&bodies[pair.0], &bodies[pair.1]);
-            let names = (&first.name, &second.name);
-            let contact = contacts.iter().find(|contact| {
-                let (a, b) = &contact.between;
-                [(a, b), (b, a)].contains(&names)
-            });
+            let contact = contacts.get(&pair);
             let is_endless = |body: &BodyPlan| !body.bounds.is_bounded();
             let is_solid = |body: &BodyPlan| matches!(body.kind, BodyKind::Rigid | BodyKind::Solid);
             if (is_endless(first) || is_endless(second)) && is_solid(first) && is_solid(second) {

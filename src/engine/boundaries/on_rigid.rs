@@ -106,7 +106,7 @@ fn arm(select: &Select, particle: DVec3, body: &BodyPlan, region: &dyn Region) -
 /// is what the two kicks spend. With the places of one end, it would be off by half the angle of a step.
 pub(super) fn push_beside(part: &Part, arms: &[DVec3], [last, next]: [&[DVec3]; 2], step: &Step<'_>) -> f64 {
     let mut bodies = step.resources.get_mut::<RigidBodies>();
-    let Some(body) = bodies.iter_mut().find(|body| body.id == part.body && !body.state.gone) else {
+    let Some(body) = bodies.of_mut(part.body).filter(|body| !body.state.gone) else {
         return 0.0;
     };
     let (turn, center) = (body.state.rotation, body.reference_center);

@@ -1,5 +1,7 @@
 //! The contacts of a scene pair by pair.
 
+use std::collections::BTreeMap;
+
 use super::{BodyKind, BodyPlan, SimBuilder};
 use crate::scene::{Contact, Scene, TouchingPairs};
 
@@ -10,7 +12,8 @@ pub fn contact_pairs<'a>(
     scene: &'a Scene,
     bodies: &'a [BodyPlan],
 ) -> impl Iterator<Item = (usize, Contact)> + 'a {
-    let kind = |name: &str| bodies.iter().find(|body| body.name == name).map(|body| body.kind);
+    let kinds: BTreeMap<&str, BodyKind> = bodies.iter().map(|body| (body.name.as_str(), body.kind)).collect();
+    let kind = move |name: &str| kinds.get(name).copied();
     scene.contact_pairs().filter(move |(number, contact)| {
         let (a, b) = &contact.between;
         let states = |name: &str| scene.contacts[*number].states(name);

@@ -201,6 +201,23 @@ impl Shareable for RigidBodies {
 #[derive(Default)]
 pub struct RigidBodies(pub(super) Vec<RigidBody>);
 
+impl RigidBodies {
+    /// Its number among them, if a body is rigid.
+    fn number(&self, id: BodyId) -> Option<usize> {
+        self.0.binary_search_by_key(&id, |body| body.id).ok()
+    }
+
+    /// The rigid body of that index in the scene.
+    pub fn of(&self, id: BodyId) -> Option<&RigidBody> {
+        self.number(id).map(|number| &self.0[number])
+    }
+
+    /// The same, to be changed.
+    pub fn of_mut(&mut self, id: BodyId) -> Option<&mut RigidBody> {
+        self.number(id).map(|number| &mut self.0[number])
+    }
+}
+
 impl Deref for RigidBodies {
     type Target = [RigidBody];
 

@@ -165,7 +165,7 @@ pub(crate) fn is_rigid(step: &Step<'_>, body: BodyId) -> bool {
 /// is not rigid.
 pub(crate) fn take_out(step: &Step<'_>, body: BodyId) -> Option<f64> {
     let mut bodies = step.resources.try_get_mut::<RigidBodies>()?;
-    bodies.iter_mut().find(|rigid| rigid.id == body).map(|rigid| rigid.take_out(step.clock.dt))
+    bodies.of_mut(body).map(|rigid| rigid.take_out(step.clock.dt))
 }
 
 struct RigidDrift {

@@ -140,8 +140,7 @@ fn added(velocity: DVec3, world: &World, resources: &Resources) -> Result<Vec<f6
 /// The rigid body of that number, if it is one.
 fn rigid<R>(resources: &Resources, id: BodyId, of: impl Fn(&RigidBody) -> R) -> Option<R> {
     let bodies = resources.try_get::<RigidBodies>()?;
-    let at = bodies.binary_search_by_key(&id, |body| body.id).ok()?;
-    Some(of(&bodies[at]))
+    bodies.of(id).map(of)
 }
 
 /// Mass and momentum of a body.

@@ -47,7 +47,7 @@ impl MotionBounds {
     /// Of a body, the shapes of whose particles follow their deformation if it is to `deform`.
     pub fn of(body: BodyId, deform: bool, step: &Step<'_>) -> Result<Self, StepError> {
         if let Some(bodies) = step.resources.try_get::<RigidBodies>()
-            && let Some(rigid) = bodies.iter().find(|rigid| rigid.id == body)
+            && let Some(rigid) = bodies.of(body)
         {
             // The points that touch are farther out than the particles.
             let spread = rigid.state.angular_velocity.length() * rigid.bounding_radius;

@@ -7,7 +7,7 @@ use super::members::{MemberColumns, MemberParticles};
 use super::node_view::{NodeTurn, NodeView};
 use super::shape::Proximity;
 use crate::neighbors::Periodic;
-use crate::rigid::RigidBody;
+use crate::rigid::{RigidBodies, RigidBody};
 use crate::schedule::{Resources, StepError};
 use crate::shapes::SurfacePoint;
 use crate::symmetry::Repeat;
@@ -67,7 +67,7 @@ impl ContactSides {
         &self,
         world: &World,
         resources: &Resources,
-        bodies: &[RigidBody],
+        bodies: &RigidBodies,
         f: impl FnOnce(&NodeView<'_>, &RigidBody) -> T,
     ) -> Result<T, StepError> {
         let tool = find(bodies, self.second)?;
@@ -142,7 +142,6 @@ impl ContactSides {
     }
 }
 
-fn find(bodies: &[RigidBody], id: BodyId) -> Result<&RigidBody, StepError> {
-    let missing = || failed(format!("body {} is not rigid", id.0));
-    bodies.iter().find(|body| body.id == id).ok_or_else(missing)
+fn find(bodies: &RigidBodies, id: BodyId) -> Result<&RigidBody, StepError> {
+    bodies.of(id).ok_or_else(|| failed(format!("body {} is not rigid", id.0)))
 }

@@ -51,6 +51,18 @@ impl ParticleContact {
         self.search.min_period()
     }
 
+    /// Whether nothing touches and no particles are near each other; the boxes around both bodies tell nothing
+    /// of their images.
+    pub fn is_idle(&self) -> bool {
+        let is_empty = self.search.pairs().is_empty() && self.contacts.histories.is_empty();
+        is_empty && self.mirror == Map::IDENTITY
+    }
+
+    /// Has all pairs searched again.
+    pub fn forget(&mut self) {
+        self.search.forget();
+    }
+
     fn find(&mut self, step: &Step<'_>) -> Result<(), StepError> {
         let ((first, first_rows), (second, second_rows)) =
             (step.world.body_view(self.first.body), step.world.body_view(self.second.body));

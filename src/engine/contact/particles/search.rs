@@ -116,6 +116,11 @@ impl Search {
         is_old
     }
 
+    /// Has the list built again.
+    pub fn forget(&mut self) {
+        self.budget = -1.0;
+    }
+
     /// Minimum period with which each particle sees one image of another, m.
     pub fn min_period(&self) -> f64 {
         2.0 * (self.largest[0] + self.largest[1] + self.skin)

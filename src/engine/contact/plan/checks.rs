@@ -1,6 +1,6 @@
 //! Invalid contacts of a scene.
 
-use super::body::{find, is_rigid};
+use super::body::is_rigid;
 use crate::plugin::{BodyKind, BodyPlan, Offer, SimBuilder};
 use crate::scene::{Contact, Problem};
 
@@ -8,6 +8,9 @@ use crate::scene::{Contact, Problem};
 pub(super) struct NamedPair<'a> {
     pub contact: &'a Contact,
     pub number: usize,
+    pub bodies: [&'a BodyPlan; 2],
+    /// Whether a contact before it is between the same bodies.
+    pub is_known: bool,
 }
 
 impl NamedPair<'_> {
@@ -16,43 +19,39 @@ impl NamedPair<'_> {
         Problem::at_path(format!("contacts[{}].between", self.number), message).help(help)
     }
 
-    /// Why there cannot be such a contact after `others`.
-    pub fn refused(&self, others: &[(usize, Contact)], sim: &SimBuilder<'_>) -> Option<Problem> {
-        self.with_a_fluid(sim)
-            .or_else(|| self.named_before(others))
-            .or_else(|| self.rigid_with_itself(sim))
-            .or_else(|| self.heat_without_temperature(sim))
-            .or_else(|| self.own_contact_not_offered(sim))
+    /// Why there cannot be such a contact.
+    pub fn refused(&self) -> Option<Problem> {
+        self.with_a_fluid()
+            .or_else(|| self.named_before())
+            .or_else(|| self.rigid_with_itself())
+            .or_else(|| self.heat_without_temperature())
+            .or_else(|| self.own_contact_not_offered())
     }
 
-    fn named_before(&self, others: &[(usize, Contact)]) -> Option<Problem> {
+    fn named_before(&self) -> Option<Problem> {
         let (a, b) = &self.contact.between;
-        let same = |(_, other): &(usize, Contact)| {
-            other.between == (a.clone(), b.clone()) || other.between == (b.clone(), a.clone())
-        };
-        others.iter().any(same).then(|| {
+        self.is_known.then(|| {
             let message = format!("the contact between `{a}` and `{b}` is given twice");
             self.problem(message, "give each pair of bodies once")
         })
     }
 
-    fn with_a_fluid(&self, sim: &SimBuilder<'_>) -> Option<Problem> {
-        let (a, b) = &self.contact.between;
-        let fluid = [a, b].into_iter().find(|name| find(sim, name).kind == BodyKind::Fluid)?;
-        let message = format!("`{fluid}` is a fluid, which has no contacts");
+    fn with_a_fluid(&self) -> Option<Problem> {
+        let fluid = self.bodies.into_iter().find(|body| body.kind == BodyKind::Fluid)?;
+        let message = format!("`{}` is a fluid, which has no contacts", fluid.name);
         Some(self.problem(message, "leave this contact out: the flow acts on the bodies in it without one"))
     }
 
-    fn rigid_with_itself(&self, sim: &SimBuilder<'_>) -> Option<Problem> {
-        let (a, b) = &self.contact.between;
-        (a == b && is_rigid(find(sim, a)))
+    fn rigid_with_itself(&self) -> Option<Problem> {
+        let [a, b] = self.bodies.map(|body| &body.name);
+        (a == b && is_rigid(self.bodies[0]))
             .then(|| self.problem(format!("rigid body `{a}` cannot touch itself"), "leave this contact out"))
     }
 
     /// The problem of a contact whose friction is to heat bodies that have no temperature.
-    fn heat_without_temperature(&self, sim: &SimBuilder<'_>) -> Option<Problem> {
+    fn heat_without_temperature(&self) -> Option<Problem> {
         let (a, b) = &self.contact.between;
-        let is_cold = [a, b].into_iter().all(|name| find(sim, name).specific_heat().is_none());
+        let is_cold = self.bodies.into_iter().all(|body| body.specific_heat().is_none());
         (self.contact.friction_heat.is_some() && is_cold).then(|| {
             let message = format!("neither `{a}` nor `{b}` is of a material with a specific heat");
             Problem::at_path(format!("contacts[{}].friction_heat", self.number), message)
@@ -61,10 +60,9 @@ impl NamedPair<'_> {
     }
 
     /// The problem of a body that is to touch itself and whose formulation has no such contact.
-    fn own_contact_not_offered(&self, sim: &SimBuilder<'_>) -> Option<Problem> {
-        let (a, b) = &self.contact.between;
-        let body = find(sim, a);
-        if a != b || body.offers(Offer::SelfContact) {
+    fn own_contact_not_offered(&self) -> Option<Problem> {
+        let [body, other] = self.bodies;
+        if body.id != other.id || body.offers(Offer::SelfContact) {
             return None;
         }
         let BodyPlan { name, formulation, .. } = body;

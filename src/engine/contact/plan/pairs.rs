@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::body::{elastic_of, find, is_rigid};
+use super::body::{elastic_of, is_rigid};
 use super::checks::NamedPair;
 use super::images::mirrors;
 use super::skins_of::BodySkins;
@@ -10,7 +10,7 @@ use crate::contact::bodies::{BUMPS, ContactSides, MemberParticles, NodeTurn, Sid
 use crate::contact::laws::{ContactPair, NormalForce, damping_ratio};
 use crate::contact::particles::ParticleContact;
 use crate::contact::response::Interaction;
-use crate::contact::skins::{SkinOnTool, SkinPair};
+use crate::contact::skins::{SkinContact, SkinOnTool};
 use crate::contact::system::{ContactActivity, FailingSkins, Touching};
 use crate::contact::tools::SurfaceContact;
 use crate::plugin::{BodyPlan, Offer, SimBuilder};
@@ -48,8 +48,7 @@ impl Planner<'_> {
         &mut self,
         named: &NamedPair<'_>,
     ) -> Result<Vec<(Touching, ContactActivity)>, Vec<Problem>> {
-        let (a, b) = &named.contact.between;
-        let (first, second) = (find(self.sim, a), find(self.sim, b));
+        let [first, second] = named.bodies;
         match (is_rigid(first), is_rigid(second)) {
             (false, false) => self.deformable(named, [first, second]),
             (false, true) => self.on_tool(named, first, second),
@@ -76,7 +75,7 @@ impl Planner<'_> {
             }
         } else if let (Some(one), Some(other)) = (self.skin(first, named), self.skin(second, named)) {
             let interaction = self.interaction(named, ContactSurface::Skin)?;
-            let pair = SkinPair::new(interaction, [one.clone(), other.clone()], self.sim.periodic());
+            let pair = SkinContact::new(interaction, [one.clone(), other.clone()], self.sim.periodic());
             named.refuse_short_periods(pair.min_period(), self.sim)?;
             let mut carried = vec![(first, one), (second, other)];
             carried.dedup_by_key(|(body, _)| body.id);
@@ -203,7 +202,7 @@ impl Planner<'_> {
         surface: ContactSurface,
     ) -> Result<Interaction, Vec<Problem>> {
         let contact = named.contact;
-        let [first, second] = [&contact.between.0, &contact.between.1].map(|name| find(self.sim, name));
+        let [first, second] = named.bodies;
         let softness =
             |body: &BodyPlan| elastic_of(body).map_or(0.0, |e| (1.0 - e.poisson.powi(2)) / e.young);
         let modulus = 1.0 / (softness(first) + softness(second));

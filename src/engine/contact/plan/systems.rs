@@ -1,5 +1,7 @@
 //! Adds the systems of all contacts of a scene.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use super::checks::NamedPair;
 use super::pairs::{MakeLaw, Planner};
 use super::skins_of::BodySkins;
@@ -8,7 +10,7 @@ use crate::contact::system;
 use crate::contact::system::{Planned, Touching};
 use crate::plugin::SimBuilder;
 use crate::scene::{Contact, Problem};
-use crate::world::BodySet;
+use crate::world::{BodyId, BodySet};
 
 /// Adds the contacts of the scene.
 ///
@@ -28,9 +30,18 @@ pub fn add_systems(sim: &mut SimBuilder<'_>, make: MakeLaw<'_>) -> Result<(), Ve
     let (mut planned, mut problems) = (Planned::default(), Vec::new());
     // The contact of the scene that each pair belongs to.
     let mut numbers = Vec::new();
-    for (n, (number, contact)) in contacts.iter().enumerate() {
-        let named = NamedPair { contact, number: *number };
-        if let Some(problem) = named.refused(&contacts[..n], planner.sim) {
+    let numbers_of: BTreeMap<&str, usize> =
+        planner.sim.bodies().iter().map(|body| (body.name.as_str(), body.id.0)).collect();
+    let mut known = BTreeSet::new();
+    for (number, contact) in &contacts {
+        let (a, b) = &contact.between;
+        // Names of bodies are checked with the scene.
+        let id = |name: &str| BodyId(numbers_of.get(name).copied().unwrap_or(0));
+        let [first, second] = [id(a), id(b)];
+        let is_known = !known.insert([first.min(second), first.max(second)]);
+        let bodies = [planner.sim.body(first), planner.sim.body(second)];
+        let named = NamedPair { contact, number: *number, bodies, is_known };
+        if let Some(problem) = named.refused() {
             problems.push(problem);
             continue;
         }

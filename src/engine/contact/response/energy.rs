@@ -47,7 +47,8 @@ impl BlockSum for ContactEnergy {
     }
 }
 
-/// Books the contacts of all pairs: each body has half. `stored` has a place for each body, J.
+/// Books the contacts of all pairs: each body has half. `stored` has a place for each body, J,
+/// ascending.
 pub(in crate::contact) fn book(
     step: &mut Step<'_>,
     energies: &[((BodyId, BodyId), ContactEnergy)],
@@ -59,8 +60,8 @@ pub(in crate::contact) fn book(
     let bodies = || energies.iter().flat_map(|((a, b), energies)| [(*a, energies), (*b, energies)]);
     stored.iter_mut().for_each(|(_, stored)| *stored = 0.0);
     for (body, energies) in bodies() {
-        let own = stored.iter_mut().find(|(other, _)| *other == body);
-        own.into_iter().for_each(|(_, stored)| *stored += 0.5 * energies.stored);
+        let own = stored.binary_search_by_key(&body, |(other, _)| *other);
+        own.into_iter().for_each(|k| stored[k].1 += 0.5 * energies.stored);
     }
     for &(body, stored) in &*stored {
         step.ledger.set(contact, body, stored);

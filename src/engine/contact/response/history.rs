@@ -78,6 +78,11 @@ impl Histories {
         std::mem::swap(&mut self.now, &mut self.next);
     }
 
+    /// Whether there was no contact in the last step.
+    pub fn is_empty(&self) -> bool {
+        self.now.is_empty()
+    }
+
     /// The contacts of the last step.
     pub fn entries(&self) -> &[(PairKey, History)] {
         &self.now

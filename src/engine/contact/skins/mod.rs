@@ -18,5 +18,9 @@ mod side;
 
 mod pair;
 
+mod contact;
+
+pub(super) use contact::SkinContact;
+pub(super) use near_skins::{gap_of, speed_of_points};
 pub(super) use on_tool::SkinOnTool;
 pub(super) use pair::SkinPair;

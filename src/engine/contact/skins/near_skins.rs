@@ -105,6 +105,17 @@ impl NearSkins {
         self.left.is_nan() || self.left <= 0.0
     }
 
+    /// Has all facets searched again.
+    pub fn forget(&mut self) {
+        self.left = 0.0;
+        self.regions.iter_mut().for_each(|region| region.left = 0.0);
+    }
+
+    /// Whether no facets are near each other.
+    pub fn is_empty(&self) -> bool {
+        self.candidates.iter().all(Vec::is_empty)
+    }
+
     /// The facets of the other side near a facet of this one.
     pub fn facets_near(&self, side: usize, facet: u32) -> &[u32] {
         match self.starts[side].get(facet as usize..facet as usize + 2) {
@@ -307,7 +318,7 @@ impl ReferenceFacets {
 }
 
 /// A bound of how fast points of the skins of two bodies approach each other, m/s.
-pub(super) fn speed_of_points([first, second]: [MotionBounds; 2]) -> f64 {
+pub(in crate::contact) fn speed_of_points([first, second]: [MotionBounds; 2]) -> f64 {
     first.velocity.distance(second.velocity) + FASTER * (first.spread + second.spread)
 }
 
@@ -317,7 +328,7 @@ fn distance(around: &Aabb, x: DVec3, periodic: &Periodic) -> f64 {
 }
 
 /// How far two boxes, or images of them, are apart at least, m.
-fn gap_of(first: &Aabb, second: &Aabb, periodic: &Periodic) -> f64 {
+pub(in crate::contact) fn gap_of(first: &Aabb, second: &Aabb, periodic: &Periodic) -> f64 {
     if !periodic.any() {
         return (first.min - second.max).max(second.min - first.max).max(DVec3::ZERO).length();
     }

@@ -49,6 +49,11 @@ impl NearTool {
         self.left.is_nan() || self.left <= 0.0
     }
 
+    /// Has all facets searched again.
+    pub fn forget(&mut self) {
+        (self.left, self.region.left) = (0.0, 0.0);
+    }
+
     /// Finds the facets near the tool.
     pub fn find(&mut self, skin: &Skin, view: &SkinView<'_>, sides: &ContactSides, tool: &RigidBody) {
         let near = NEAR * skin.spacing;

@@ -95,6 +95,16 @@ impl SkinOnTool {
         }
     }
 
+    /// Whether nothing touches and no facets are near the tool.
+    pub fn is_idle(&self) -> bool {
+        self.near.facets.is_empty() && self.contacts.histories.is_empty()
+    }
+
+    /// Has all facets searched again.
+    pub fn forget(&mut self) {
+        self.near.forget();
+    }
+
     /// Computes the forces of all points that touch, and pushes the rigid body.
     pub fn run(
         &mut self,
@@ -103,7 +113,7 @@ impl SkinOnTool {
     ) -> Result<ContactEnergy, StepError> {
         let (energies, on_tool) = self.evaluate(step, motion)?;
         let mut bodies = step.resources.get_mut::<RigidBodies>();
-        let tool = bodies.iter_mut().find(|body| body.id == self.tool);
+        let tool = bodies.of_mut(self.tool);
         tool.into_iter().for_each(|tool| tool.push(&on_tool));
         Ok(energies)
     }
@@ -117,7 +127,7 @@ impl SkinOnTool {
         let resources = step.resources;
         let bodies = resources.get::<RigidBodies>();
         let missing = || failed("no rigid body");
-        let tool = bodies.iter().find(|body| body.id == self.tool).ok_or_else(missing)?;
+        let tool = bodies.of(self.tool).ok_or_else(missing)?;
         let dt = step.clock.dt;
         let skin = Arc::clone(&self.patch.skin);
         let columns = SkinColumns::new(&skin, step.world)?;

@@ -39,7 +39,7 @@ const CORNERS: f64 = 2.0;
 
 /// Contact of two skins.
 pub(in crate::contact) struct SkinPair {
-    interaction: Interaction,
+    interaction: Arc<Interaction>,
     /// Number of skins whose points are tested: both, or the one of a body that touches itself.
     sides: usize,
     /// Both skins; of a body that touches itself its skin twice, first with its points, then with its facets.
@@ -57,7 +57,7 @@ pub(in crate::contact) struct SkinPair {
 
 impl SkinPair {
     /// Contact of two skins in a domain that is periodic along some axes.
-    pub fn new(interaction: Interaction, skins: [Arc<Skin>; 2], periodic: Periodic) -> Self {
+    pub fn new(interaction: Arc<Interaction>, skins: [Arc<Skin>; 2], periodic: Periodic) -> Self {
         let rule = QuadratureRule::exact(skins[0].facets.axes);
         let sides = if skins[0].body == skins[1].body { 1 } else { 2 };
         let passes = [0, 1].map(|side| {
@@ -73,10 +73,14 @@ impl SkinPair {
         Self { interaction, sides, patches, keeps_reference: false, rule, near, periodic, places, passes }
     }
 
-    /// Minimum period of the domain with which the contact works, m.
-    pub fn min_period(&self) -> f64 {
-        let [first, second] = self.patches.each_ref().map(|patch| &*patch.skin);
-        NearSkins::min_period([first, second])
+    /// Whether nothing touches and no facets are near each other.
+    pub fn is_idle(&self) -> bool {
+        self.near.is_empty() && self.passes.iter().all(|pass| pass.histories.is_empty())
+    }
+
+    /// Has all facets searched again.
+    pub fn forget(&mut self) {
+        self.near.forget();
     }
 
     /// Computes the forces of all points that touch.
@@ -117,7 +121,7 @@ impl SkinPair {
                 }
             }
         }
-        let Interaction { damping_ratio, .. } = self.interaction;
+        let Interaction { damping_ratio, .. } = *self.interaction;
         let wanted = Wanted { mobility: damping_ratio > 0.0, gradients: !self.interaction.is_elastic() };
         self.patches.iter_mut().zip(&views).for_each(|(patch, view)| patch.update(view, dt, wanted));
         for (side, places) in self.places.iter_mut().enumerate() {

@@ -1,11 +1,13 @@
 //! The system of all contacts of a scene.
 
+use super::apart::{InContact, PairDistance};
 use super::beside_held::ReachedSide;
 use super::chatter::Chatter;
 use super::fragile::{ContactActivity, FailingSkins, break_skins};
 use super::touching::{Saved, Touching};
-use crate::contact::bodies::{CONTACT, MotionBounds, NodeTurn};
+use crate::contact::bodies::{CONTACT, NodeTurn};
 use crate::contact::response::{CHANGE_OF_SURFACE, ContactEnergy, energy};
+use crate::neighbors::Periodic;
 use crate::plugin::SimBuilder;
 use crate::removal::LEAVING;
 use crate::rigid::{RIGID_BODIES, RigidBodies, Wrench};
@@ -18,6 +20,9 @@ use crate::world::{
 
 /// Label of the system that adds them to the particles.
 const CONTACT_FORCE: &str = "contact_force";
+
+/// Pairs near each other for each body with memory from the start.
+const NEIGHBORS: usize = 8;
 
 /// The contacts of a scene, when each of them acts, and the bodies that can fail among them.
 #[derive(Default)]
@@ -34,11 +39,16 @@ pub(in crate::contact) fn add(sim: &mut SimBuilder<'_>, planned: Planned, bodies
     // Where no contact heats anything, temperatures are left alone.
     let heats = sim.scene().contacts.iter().any(|contact| contact.friction_heat.is_some());
     let warm = |body: BodyId| Some((body, sim.body(body).specific_heat().filter(|_| heats)?));
+    let in_contact = InContact::of(bodies.iter(), &touching);
+    let distance = |pair: &Touching| PairDistance::of(pair, &in_contact, |body| sim.body(body).spacing);
     let contacts = Contacts {
         specific_heats: bodies.iter().filter_map(warm).collect(),
-        bodies: bodies.iter().map(|body| InContact::of(body, &touching)).collect(),
         stored: bodies.iter().map(|body| (body, 0.0)).collect(),
-        energies: Vec::with_capacity(touching.len()),
+        energies: Vec::with_capacity(touching.len().min(NEIGHBORS * in_contact.len())),
+        acting: Vec::with_capacity(touching.len()),
+        distances: touching.iter().map(distance).collect(),
+        bodies: in_contact,
+        periodic: sim.periodic(),
         chatter: vec![Chatter::default(); touching.len()],
         gone: Vec::new(),
         reached: bodies.iter().flat_map(|body| ReachedSide::of(sim.body(body))).collect(),
@@ -86,6 +96,11 @@ struct Contacts {
     acts: Vec<ContactActivity>,
     /// The bodies that can fail and touch with their skins until then.
     fragile: Vec<FailingSkins>,
+    /// How far apart the bodies of each are.
+    distances: Vec<PairDistance>,
+    /// Those that act in this step and whose bodies are near each other, ascending.
+    acting: Vec<u32>,
+    periodic: Periodic,
     energies: Vec<((BodyId, BodyId), ContactEnergy)>,
     /// Whether each of them chatters.
     chatter: Vec<Chatter>,
@@ -95,31 +110,11 @@ struct Contacts {
     reached: Vec<ReachedSide>,
 }
 
-/// A body that touches others.
-struct InContact {
-    body: BodyId,
-    /// Whether the shapes of particles of it that touch follow their deformation.
-    deform: bool,
-    motion: MotionBounds,
-}
-
-impl InContact {
-    fn of(body: BodyId, touching: &[Touching]) -> Self {
-        let mut particles = touching.iter().flat_map(Touching::particles);
-        let deform = particles.any(|particles| particles.deform && particles.body == body);
-        Self { body, deform, motion: MotionBounds::NONE }
-    }
-}
-
 impl Contacts {
     fn meet(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
-        for InContact { body, deform, motion } in &mut self.bodies {
-            *motion = MotionBounds::of(*body, *deform, step)?;
+        for body in &mut self.bodies {
+            body.follow(step)?;
         }
-        let motion_of = |body: BodyId| {
-            let known = self.bodies.iter().find(|known| known.body == body);
-            known.map_or(MotionBounds::NONE, |known| known.motion)
-        };
         if let Some(mut bodies) = step.resources.try_get_mut::<RigidBodies>() {
             bodies.iter_mut().for_each(|body| body.contact_stiffness = Wrench::default());
             self.gone.clear();
@@ -132,39 +127,38 @@ impl Contacts {
         for fragile in &mut self.fragile {
             fragile.look(step)?;
         }
-        for k in 0..self.touching.len() {
-            if self.acts_now(k) {
-                let pair = &mut self.touching[k];
-                pair.find(step, pair.bodies().map(motion_of))?;
-            }
+        self.choose_acting(step)?;
+        for &k in &self.acting {
+            let k = k as usize;
+            self.touching[k].find(step, self.distances[k].motion(&self.bodies))?;
         }
         self.energies.clear();
         for number in 0..self.fragile.len() {
             if self.fragile[number].is_breaking() {
-                self.energies.push(break_skins(number, &mut self.touching, &self.acts, step, &motion_of)?);
+                let Self { touching, acts, distances, bodies, .. } = self;
+                let motion_of = |k: usize| distances[k].motion(bodies);
+                self.energies.push(break_skins(number, touching, acts, step, &motion_of)?);
             }
         }
-        for k in 0..self.touching.len() {
-            if !self.acts_now(k) {
-                continue;
-            }
+        for at in 0..self.acting.len() {
+            let k = self.acting[at] as usize;
             let other = match self.touching[k].turn() {
                 NodeTurn::Alone => None,
                 NodeTurn::First => Some(k + 1),
                 NodeTurn::Second => Some(k - 1),
             };
             let beside = other.and_then(|other| self.touching[other].beside_the_other());
-            let pair = &mut self.touching[k];
+            let (pair, motion) = (&mut self.touching[k], self.distances[k].motion(&self.bodies));
+            let mut energies = pair.run(step, motion, beside)?;
             let [first, second] = pair.bodies();
-            let mut energies = pair.run(step, [motion_of(first), motion_of(second)], beside)?;
             self.chatter[k].look([first, second], &energies.losses.sliding, step);
             if self.acts[k].begins(&self.fragile) {
                 energies = energies.taken_over();
             }
             self.energies.push(((first, second), energies));
         }
-        let Self { touching, reached, .. } = self;
-        for patch in touching.iter().flat_map(Touching::patches) {
+        let Self { touching, acting, reached, .. } = self;
+        for patch in acting.iter().flat_map(|&k| touching[k as usize].patches()) {
             reached.iter_mut().for_each(|side| side.look(patch, step));
         }
         energy::book(step, &self.energies, &mut self.stored);
@@ -178,9 +172,28 @@ impl Contacts {
         self.acts[k].now(&self.fragile) && self.touching[k].bodies().iter().all(is_there)
     }
 
-    /// The contacts that act in this step.
+    /// Chooses the contacts that act in this step, of bodies that are near each other. The others only limit
+    /// the time step.
+    fn choose_acting(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        self.acting.clear();
+        for k in 0..self.touching.len() {
+            if !self.acts_now(k) {
+                continue;
+            }
+            let Self { touching, distances, bodies, periodic, acting, .. } = self;
+            let (pair, distance) = (&mut touching[k], &mut distances[k]);
+            if distance.follow(pair, bodies, periodic, step)? {
+                pair.limit_apart(step, distance.motion(bodies), distance.reach)?;
+            } else {
+                acting.push(k as u32);
+            }
+        }
+        Ok(())
+    }
+
+    /// The contacts that act in this step, of bodies that are near each other.
     fn acting(&self) -> impl Iterator<Item = &Touching> {
-        (0..self.touching.len()).filter(|&k| self.acts_now(k)).map(|k| &self.touching[k])
+        self.acting.iter().map(|&k| &self.touching[k as usize])
     }
 
     /// Adds what acts on the material beside particles to its stress, before the pass of the internal force.

@@ -130,18 +130,17 @@ pub(super) fn break_skins(
     touching: &mut [Touching],
     acts: &[ContactActivity],
     step: &mut Step<'_>,
-    motion_of: &dyn Fn(BodyId) -> MotionBounds,
+    motion_of: &dyn Fn(usize) -> [MotionBounds; 2],
 ) -> Result<((BodyId, BodyId), ContactEnergy), StepError> {
     let mut bodies = (BodyId(0), BodyId(0));
     let (mut held, mut pressed) = (ContactEnergy::default(), 0.0);
-    for (pair, acts) in touching.iter_mut().zip(acts) {
-        let [first, second] = pair.bodies();
-        let motion = [motion_of(first), motion_of(second)];
+    for (k, (pair, acts)) in touching.iter_mut().zip(acts).enumerate() {
         if *acts == ContactActivity::WhileWhole(number) {
-            bodies = (first, second);
-            held = pair.held(step, motion)?;
+            bodies = pair.bodies().into();
+            pair.come_near();
+            held = pair.held(step, motion_of(k))?;
         } else if *acts == ContactActivity::OnceBroken(number) {
-            pressed += pair.pressed(step, motion)?;
+            pressed += pair.pressed(step, motion_of(k))?;
         }
     }
     // The energy of a spring goes with the square of its overlap, and faster where it hardens.

@@ -4,6 +4,8 @@ mod fragile;
 
 mod touching;
 
+mod apart;
+
 mod beside_held;
 
 mod chatter;

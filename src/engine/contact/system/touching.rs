@@ -1,13 +1,17 @@
 //! A pair of bodies with a contact.
 
+use std::sync::Arc;
+
 use crate::contact::active::ContactNodes;
 use crate::contact::bodies::{MemberParticles, MotionBounds, NodeTurn};
 use crate::contact::particles::ParticleContact;
+use crate::contact::response::time_step::{self, Touches};
 use crate::contact::response::{ContactEnergy, Histories, History, PairKey};
-use crate::contact::skins::{SkinOnTool, SkinPair};
+use crate::contact::skins::{SkinContact, SkinOnTool, SkinPair};
 use crate::contact::tools::{CoupledResponse, SurfaceContact};
 use crate::schedule::{Step, StepError};
-use crate::skins::{Last, Patch};
+use crate::skins::{Last, Patch, Skin};
+use crate::symmetry::Map;
 use crate::world::BodyId;
 
 /// Two bodies that touch.
@@ -15,7 +19,7 @@ pub(in crate::contact) enum Touching {
     Particles(Box<ParticleContact>),
     Surface(Box<SurfaceContact>),
     SkinOnTool(Box<SkinOnTool>),
-    Skins(Box<SkinPair>),
+    Skins(Box<SkinContact>),
 }
 
 impl Touching {
@@ -25,7 +29,55 @@ impl Touching {
             Self::Particles(contact) => [contact.first.body, contact.second.body],
             Self::Surface(contact) => [contact.sides.first, contact.sides.second],
             Self::SkinOnTool(contact) => [contact.patch.skin.body, contact.tool],
-            Self::Skins(contact) => [0, 1].map(|k| contact.patches[k].skin.body),
+            Self::Skins(contact) => contact.skins.each_ref().map(|skin| skin.body),
+        }
+    }
+
+    /// Distance at which particles just touch, m; none between rigid bodies.
+    pub fn reach(&self) -> Option<f64> {
+        match self {
+            Self::Particles(contact) => Some(contact.first.min_radius() + contact.second.min_radius()),
+            Self::Surface(contact) => Some(2.0 * contact.sides.nodes.particles()?.min_radius()),
+            Self::SkinOnTool(contact) => Some(contact.patch.skin.spacing),
+            Self::Skins(contact) => Some(contact.skins[0].spacing.min(contact.skins[1].spacing)),
+        }
+    }
+
+    /// Whether nothing touches, and nothing is so near that it may.
+    pub fn is_idle(&self) -> bool {
+        match self {
+            Self::Particles(contact) => contact.is_idle(),
+            Self::Surface(contact) => contact.is_idle(),
+            Self::SkinOnTool(contact) => contact.is_idle(),
+            Self::Skins(contact) => contact.known().is_none_or(SkinPair::is_idle),
+        }
+    }
+
+    /// Ends a time in which both were apart: what may touch has to be searched again.
+    pub fn come_near(&mut self) {
+        match self {
+            Self::Particles(contact) => contact.forget(),
+            Self::Surface(contact) => contact.forget(),
+            Self::SkinOnTool(contact) => contact.forget(),
+            Self::Skins(contact) => contact.near().forget(),
+        }
+    }
+
+    /// Proposes the limits of bodies that are apart.
+    pub fn limit_apart(
+        &self,
+        step: &mut Step<'_>,
+        motion: [MotionBounds; 2],
+        reach: Option<f64>,
+    ) -> Result<(), StepError> {
+        match (self, reach) {
+            (_, Some(reach)) => {
+                let speed = MotionBounds::approach(motion, &Map::IDENTITY);
+                let touches = Touches { squared: 0.0, stored: 0.0, speed, reach };
+                time_step::propose(step, self.bodies(), &touches)
+            }
+            (Self::Surface(contact), None) => contact.limit_apart(step, motion),
+            (_, None) => Ok(()),
         }
     }
 
@@ -59,7 +111,7 @@ impl Touching {
             Self::Particles(contact) => contact.run(step, motion),
             Self::Surface(contact) => contact.run(step, motion, beside),
             Self::SkinOnTool(contact) => contact.run(step, motion),
-            Self::Skins(contact) => contact.run(step, motion),
+            Self::Skins(contact) => contact.near().run(step, motion),
         }
     }
 
@@ -71,7 +123,7 @@ impl Touching {
     ) -> Result<ContactEnergy, StepError> {
         match self {
             Self::SkinOnTool(contact) => Ok(contact.evaluate(step, motion)?.0),
-            Self::Skins(contact) => contact.run(step, motion),
+            Self::Skins(contact) => contact.near().run(step, motion),
             Self::Particles(_) | Self::Surface(_) => Ok(ContactEnergy::default()),
         }
     }
@@ -104,9 +156,18 @@ impl Touching {
         first.into_iter().chain(second)
     }
 
+    /// The skins of both.
+    pub fn skins(&self) -> &[Arc<Skin>] {
+        match self {
+            Self::SkinOnTool(contact) => std::slice::from_ref(&contact.patch.skin),
+            Self::Skins(contact) => &contact.skins,
+            Self::Particles(_) | Self::Surface(_) => &[],
+        }
+    }
+
     /// Whether what touches follows the deformation of bodies, and acts on the material beside particles.
     pub fn deforms(&self) -> bool {
-        !self.patches().is_empty() || self.particles().any(|particles| particles.deform)
+        !self.skins().is_empty() || self.particles().any(|particles| particles.deform)
     }
 
     /// The particles of both that touch.
@@ -127,29 +188,37 @@ impl Touching {
     pub fn patches(&self) -> &[Patch] {
         match self {
             Self::SkinOnTool(contact) => std::slice::from_ref(&contact.patch),
-            Self::Skins(contact) => &contact.patches,
+            Self::Skins(contact) => contact.known().map_or(&[], |pair| &pair.patches),
             Self::Particles(_) | Self::Surface(_) => &[],
         }
     }
 
-    /// State in a checkpoint.
+    /// State in a checkpoint: nothing where nothing touches.
     pub fn saved(&self) -> Saved {
         let histories: &[&Histories] = match self {
             Self::Particles(contact) => &[&contact.contacts.histories],
             Self::Surface(contact) => &[&contact.contacts.histories],
             Self::SkinOnTool(contact) => &[&contact.contacts.histories],
-            Self::Skins(contact) => &contact.passes.each_ref().map(|pass| &pass.histories),
+            Self::Skins(contact) => match contact.known() {
+                Some(pair) => &pair.passes.each_ref().map(|pass| &pass.histories),
+                None => &[],
+            },
         };
-        let histories = histories.iter().map(|histories| histories.entries().to_vec()).collect();
-        (histories, self.patches().iter().map(Patch::saved).collect())
+        let histories: Vec<_> = histories.iter().map(|histories| histories.entries().to_vec()).collect();
+        let patches: Vec<_> = self.patches().iter().map(Patch::saved).collect();
+        let is_empty = histories.iter().all(Vec::is_empty) && patches.iter().all(Vec::is_empty);
+        if is_empty { Saved::default() } else { (histories, patches) }
     }
 
     pub fn restore(&mut self, (histories, patches): Saved) -> bool {
+        if histories.is_empty() && patches.is_empty() {
+            return self.saved() == Saved::default();
+        }
         let own: &mut [&mut Histories] = match self {
             Self::Particles(contact) => &mut [&mut contact.contacts.histories],
             Self::Surface(contact) => &mut [&mut contact.contacts.histories],
             Self::SkinOnTool(contact) => &mut [&mut contact.contacts.histories],
-            Self::Skins(contact) => &mut contact.passes.each_mut().map(|pass| &mut pass.histories),
+            Self::Skins(contact) => &mut contact.near().passes.each_mut().map(|pass| &mut pass.histories),
         };
         if own.len() != histories.len() {
             return false;
@@ -157,7 +226,7 @@ impl Touching {
         own.iter_mut().zip(histories).for_each(|(own, entries)| own.set(entries));
         let own: &mut [Patch] = match self {
             Self::SkinOnTool(contact) => std::slice::from_mut(&mut contact.patch),
-            Self::Skins(contact) => &mut contact.patches,
+            Self::Skins(contact) => &mut contact.near().patches,
             Self::Particles(_) | Self::Surface(_) => &mut [],
         };
         own.iter_mut().zip(&patches).for_each(|(own, saved)| own.restore(saved));

@@ -1,5 +1,6 @@
 //! Contact in small scenes, against closed forms and invariants.
 
+mod apart;
 mod at_rest;
 mod crossing_edges;
 mod deformed;

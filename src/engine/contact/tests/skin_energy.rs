@@ -59,7 +59,7 @@ impl Blocks {
             let x = view.read::<Position>().unwrap();
             rows.map(|row| x[row].0 - DVec3::new(0.0, 0.1 * k as f64, 0.0)).collect()
         });
-        Self { pair: SkinPair::new(interaction, skins, Periodic::NONE), sim, reference }
+        Self { pair: SkinPair::new(Arc::new(interaction), skins, Periodic::NONE), sim, reference }
     }
 
     /// Energy, J, and the forces and couples on the particles.

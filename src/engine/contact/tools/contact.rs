@@ -7,7 +7,7 @@ use super::reaction::{NodePush, push};
 use super::together::CoupledResponse;
 use crate::contact::active::{ActiveContacts, ContactEnd, ContactNodes, NodeLoad};
 use crate::contact::bodies::{ContactSides, MemberParticles, MotionBounds};
-use crate::contact::response::time_step::{self, Touches};
+use crate::contact::response::time_step::{self, NormalMotion, Touches};
 use crate::contact::response::{ContactEnergy, Interaction};
 use crate::parallel::BlockSum;
 use crate::rigid::RigidBodies;
@@ -58,6 +58,16 @@ impl SurfaceContact {
         Self { interaction, gravity, nearby, sides, contacts, contact_nodes, near, together: None }
     }
 
+    /// Whether nothing touches and no nodes are near the surface.
+    pub fn is_idle(&self) -> bool {
+        self.nearby.candidates().is_empty() && self.contacts.histories.is_empty() && self.together.is_none()
+    }
+
+    /// Has all nodes searched again.
+    pub fn forget(&mut self) {
+        self.nearby.forget();
+    }
+
     /// Finds the nodes in contact, and adds the forces of their springs to the rigid bodies.
     pub fn find(&mut self, step: &Step<'_>, motion: [MotionBounds; 2]) -> Result<(), StepError> {
         let mut bodies = step.resources.get_mut::<RigidBodies>();
@@ -82,7 +92,7 @@ impl SurfaceContact {
         if let Some(CoupledResponse { on_node, on_tool }) = &self.together {
             let both = [(self.sides.first, on_node), (self.sides.second, on_tool)];
             for (id, springs) in both {
-                let body = bodies.iter_mut().find(|body| body.id == id);
+                let body = bodies.of_mut(id);
                 body.into_iter().for_each(|body| body.contact_stiffness.add(springs));
             }
         }
@@ -120,6 +130,21 @@ impl SurfaceContact {
             let (expected, gap) = (on.expected(near, speed, *gravity), sides.gap(nodes, tool));
             ToolResponses { energies, expected, nodes: nodes.len(), gap }
         })
+    }
+
+    /// Proposes the limits of two rigid bodies none of whose nodes is near the other one.
+    pub fn limit_apart(&self, step: &mut Step<'_>, motion: [MotionBounds; 2]) -> Result<(), StepError> {
+        let speed = MotionBounds::approach(motion, &Map::IDENTITY);
+        let Self { interaction, sides, gravity, .. } = self;
+        let (bodies, dt) = (step.resources.get::<RigidBodies>(), step.clock.dt);
+        let (expected, gap) = sides.with(step.world, step.resources, &bodies, |nodes, tool| {
+            let on = OnSurface { interaction, sides, nodes, tool, dt, together: &[] };
+            (on.expected(&NearNodes::default(), speed, *gravity), sides.gap(nodes, tool))
+        })?;
+        let pair = [sides.first, sides.second];
+        time_step::propose_rigid(step, pair, expected, NormalMotion::default());
+        time_step::propose_approach(step, pair, motion[1].velocity - motion[0].velocity, gap);
+        Ok(())
     }
 
     /// Computes the forces of all nodes that touch, and pushes the rigid bodies; `beside` are the contacts of

@@ -38,6 +38,11 @@ impl Nearby {
         &self.candidates
     }
 
+    /// Has the candidates searched again.
+    pub fn forget(&mut self) {
+        self.budget = -1.0;
+    }
+
     /// Updates the bounds of the joint motion of the two bodies, m, and of the stretch of the nodes; searches
     /// the candidates again if they may have changed, and says whether it has.
     pub fn update(

@@ -103,6 +103,7 @@ impl Formulation for Eulerian {
     fn assemble(bodies: Vec<(BodyId, Self)>, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         let mut listed = Vec::with_capacity(bodies.len());
         let mut kernels = Vec::with_capacity(bodies.len());
+        let touching = sim.touching_pairs();
         for (id, parameters) in &bodies {
             parameters.check(sim.body(*id).spacing).map_err(|error| error.of_formulation(*id))?;
             let support = parameters.support * sim.body(*id).spacing;
@@ -117,7 +118,7 @@ impl Formulation for Eulerian {
             }
             kernels.push(EulerianKernel { kernel, divergence: parameters.divergence, control: None });
             let name = &sim.body(*id).name;
-            let touches_itself = sim.touching_pairs().has(name, name);
+            let touches_itself = touching.has(name, name);
             let rows = sim.body(*id).rows.clone();
             listed.push(EulerianBody { id: *id, rows, support, repeats, touches_itself });
         }

@@ -209,7 +209,7 @@ impl Coupling {
             pressure: &mut pressure[rows.clone()],
             drag: drag.as_mut().map(|drag| drag.rows(rows)),
         };
-        let body = rigid.as_mut().and_then(|bodies| bodies.iter_mut().find(|body| body.id == group.body));
+        let body = rigid.as_mut().and_then(|bodies| bodies.of_mut(group.body));
         let (exchange, rate) = match body {
             Some(body) => (give_to_rigid_body(body, &particles, columns), particles.rate_of_rigid_body(body)),
             None => (particles.give(columns, &mut self.sums), particles.rate()),

@@ -1,0 +1,165 @@
+//! Bodies that are far apart: nothing of them touches, and all that their contact does is to limit the time
+//! step.
+//!
+//! Boxes around two bodies tell how far apart they are, and bounds of their velocities for how long. Between
+//! many bodies the cost of contact is therefore that of those near each other.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::touching::Touching;
+use crate::contact::bodies::MotionBounds;
+use crate::contact::skins::{gap_of, speed_of_points};
+use crate::neighbors::Periodic;
+use crate::rigid::RigidBodies;
+use crate::schedule::{Step, StepError};
+use crate::shapes::Aabb;
+use crate::skins::{Skin, SkinColumns};
+use crate::world::{BodyId, Position};
+
+/// Gap over the larger spacing beyond which two bodies are apart: all searches of what may touch find nothing
+/// there, and the steps that contact allows do not lead from there into a contact.
+const FAR: f64 = 4.0;
+
+/// A body that touches others.
+pub(super) struct InContact {
+    pub body: BodyId,
+    /// Whether the shapes of particles of it that touch follow their deformation.
+    deform: bool,
+    /// Its skin, if it touches with that, and the numbers of its vertices.
+    skin: Option<Arc<Skin>>,
+    vertices: Vec<u32>,
+    /// Largest radius of particles that touch, m; none if they do not.
+    radius: Option<f64>,
+    pub motion: MotionBounds,
+    /// The box around what touches, if it is known in this step; nothing is around a body without bounds.
+    around: Option<Option<Aabb>>,
+}
+
+impl InContact {
+    /// The bodies of pairs that touch, ascending.
+    pub fn of(bodies: impl Iterator<Item = BodyId>, touching: &[Touching]) -> Vec<Self> {
+        let mut all: Vec<Self> = bodies.map(Self::new).collect();
+        for pair in touching {
+            for particles in pair.particles() {
+                if let Ok(k) = all.binary_search_by_key(&particles.body, |known| known.body) {
+                    let known = &mut all[k];
+                    known.deform |= particles.deform;
+                    known.radius = Some(particles.max_radius().max(known.radius.unwrap_or(0.0)));
+                }
+            }
+            for skin in pair.skins() {
+                if let Ok(k) = all.binary_search_by_key(&skin.body, |known| known.body) {
+                    all[k].skin.get_or_insert_with(|| Arc::clone(skin));
+                }
+            }
+        }
+        for known in &mut all {
+            known.vertices.extend(0..known.skin.as_ref().map_or(0, |skin| skin.vertices() as u32));
+        }
+        all
+    }
+
+    fn new(body: BodyId) -> Self {
+        let (skin, vertices, radius) = (None, Vec::new(), None);
+        Self { body, deform: false, skin, vertices, radius, motion: MotionBounds::NONE, around: None }
+    }
+
+    /// Takes in its motion in a step.
+    pub fn follow(&mut self, step: &Step<'_>) -> Result<(), StepError> {
+        self.around = None;
+        self.motion = MotionBounds::of(self.body, self.deform, step)?;
+        Ok(())
+    }
+
+    /// The box around what touches, m; none around a body without bounds.
+    fn around(&mut self, step: &Step<'_>) -> Result<Option<Aabb>, StepError> {
+        if self.around.is_none() {
+            self.around = Some(self.look(step)?);
+        }
+        Ok(self.around.flatten())
+    }
+
+    fn look(&self, step: &Step<'_>) -> Result<Option<Aabb>, StepError> {
+        if let Some(bodies) = step.resources.try_get::<RigidBodies>()
+            && let Some(rigid) = bodies.of(self.body)
+        {
+            let is_bounded = rigid.surface.bounds().is_bounded();
+            let center = Aabb { min: rigid.state.center, max: rigid.state.center };
+            return Ok(is_bounded.then(|| center.grown(rigid.bounding_radius)));
+        }
+        let mut around = Aabb { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
+        if let Some(skin) = &self.skin {
+            SkinColumns::new(skin, step.world)?.view().places(&self.vertices, &mut |_, x, _| {
+                around = around.union(&Aabb { min: x, max: x });
+            });
+        }
+        if let Some(radius) = self.radius {
+            let (view, rows) = step.world.body_view(self.body);
+            let centers = Aabb::around(view.read_near::<Position>()?[rows].iter().map(|x| x.0));
+            around = around.union(&centers.grown(self.motion.stretch * radius));
+        }
+        Ok(Some(around))
+    }
+}
+
+/// How far apart the two bodies of a pair are.
+pub(super) struct PairDistance {
+    /// Numbers of the two among the bodies in contact.
+    bodies: [usize; 2],
+    /// The larger spacing, m.
+    spacing: f64,
+    /// Distance at which particles of both just touch, m; none between rigid bodies.
+    pub reach: Option<f64>,
+    is_apart: bool,
+    /// How far both may still move until this is looked at again, m.
+    left: f64,
+}
+
+impl PairDistance {
+    /// Of a pair of these bodies, ascending; nothing is known yet.
+    pub fn of(pair: &Touching, bodies: &[InContact], spacing: impl Fn(BodyId) -> f64) -> Self {
+        let [first, second] = pair.bodies();
+        let number = |body: BodyId| bodies.partition_point(|known| known.body < body);
+        Self {
+            bodies: [number(first), number(second)],
+            spacing: spacing(first).max(spacing(second)),
+            reach: pair.reach(),
+            is_apart: false,
+            left: 0.0,
+        }
+    }
+
+    /// Bounds of the motion of both.
+    pub fn motion(&self, bodies: &[InContact]) -> [MotionBounds; 2] {
+        self.bodies.map(|number| bodies[number].motion)
+    }
+
+    /// Takes in a step of the pair, and says whether its bodies are apart. What is near or touches wakes them
+    /// up; they fall asleep only twice as far apart, and when nothing touches any more.
+    pub fn follow(
+        &mut self,
+        pair: &mut Touching,
+        bodies: &mut [InContact],
+        periodic: &Periodic,
+        step: &Step<'_>,
+    ) -> Result<bool, StepError> {
+        self.left -= speed_of_points(self.motion(bodies)) * step.clock.dt;
+        // What is not a number must not keep bodies apart.
+        if self.left.is_nan() || self.left <= 0.0 {
+            let [first, second] = self.bodies;
+            let gap = match (bodies[first].around(step)?, bodies[second].around(step)?) {
+                (Some(first), Some(second)) => gap_of(&first, &second, periodic),
+                _ => 0.0,
+            };
+            let (far, was_apart) = (FAR * self.spacing, self.is_apart);
+            self.is_apart = gap > 2.0 * far && pair.is_idle();
+            self.left = if self.is_apart { gap - far } else { far };
+            if was_apart && !self.is_apart {
+                pair.come_near();
+            }
+        }
+        Ok(self.is_apart)
+    }
+}
