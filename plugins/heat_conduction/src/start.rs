@@ -1,7 +1,7 @@
 //! Temperatures at the start.
 
 use meshless_engine::glam::DVec3;
-use meshless_engine::notation::place;
+use meshless_engine::notation::{place, quantity};
 use meshless_engine::plugin::SimBuilder;
 use meshless_engine::scene::Expression;
 use meshless_engine::schedule::{Run, Stage, Step, StepError, System};
@@ -10,12 +10,20 @@ use meshless_engine::world::{BodyId, BodySet, ReferencePosition, Temperature};
 use crate::conduction::Conductor;
 use crate::{ConductedTemperature, ROOM};
 
+/// Difference of the mean temperatures of two bodies that is worth a warning, K.
+const DIFFERENCE: f64 = 1.0;
+
 /// Adds the system that fills the temperatures before the first step.
 pub(crate) fn add_system(sim: &mut SimBuilder<'_>, conductors: &[Conductor], given: Option<&Expression>) {
     let bodies = conductors.iter().map(|of| (of.body, of.has_temperature)).collect();
     let set = BodySet::new(conductors.iter().map(|of| of.body));
     let phases = sim.phases_of(&set);
-    let start = Start { bodies, given: given.cloned() };
+    let conducts = |name: &str| set.iter().find(|id| sim.body(*id).name == name);
+    let touching = sim.contact_pairs().filter_map(|(_, contact)| {
+        let (first, second) = &contact.between;
+        Some([conducts(first)?, conducts(second)?]).filter(|[first, second]| first != second)
+    });
+    let start = Start { bodies, touching: touching.collect(), given: given.cloned() };
     sim.add_system(
         System::new(Stage::Neighbors, "temperature_at_the_start", start)
             .on_phases(phases)
@@ -29,6 +37,8 @@ pub(crate) fn add_system(sim: &mut SimBuilder<'_>, conductors: &[Conductor], giv
 struct Start {
     /// Bodies, and whether the material has set the temperature.
     bodies: Vec<(BodyId, bool)>,
+    /// Pairs of them with a contact, through which no heat passes.
+    touching: Vec<[BodyId; 2]>,
     given: Option<Expression>,
 }
 
@@ -57,6 +67,29 @@ impl Run for Start {
                     return Err(StepError::System { system: "heat_conduction".to_owned(), message });
                 }
                 last[row].0 = now[row].0;
+            }
+        }
+        self.warn_of_differences(step)
+    }
+}
+
+impl Start {
+    /// Warns of bodies that touch and start at different temperatures.
+    fn warn_of_differences(&self, step: &mut Step<'_>) -> Result<(), StepError> {
+        for pair in &self.touching {
+            let mut means = [0.0; 2];
+            for (mean, body) in means.iter_mut().zip(pair) {
+                let (view, rows) = step.world.body_view(*body);
+                let (temperature, count) = (view.read::<Temperature>()?, rows.len() as f64);
+                *mean = rows.map(|row| temperature[row].0).sum::<f64>() / count;
+            }
+            if (means[0] - means[1]).abs() > DIFFERENCE {
+                let [first, second] = pair.map(|id| &step.world.body(id).name[..]);
+                let [of_first, of_second] = means.map(|mean| quantity(mean, "K"));
+                step.warnings.push(format!(
+                    "no heat passes between `{first}` and `{second}`, which have a contact and start at {of_first} and {of_second}: \
+                     `heat_conduction` conducts within bodies alone"
+                ));
             }
         }
         Ok(())
