@@ -23,7 +23,7 @@ pub(crate) fn fields() -> [Field; 2] {
 /// Root mean square of |F_i X_ij - x_ij| / |X_ij| over the neighbours. At a crack it is that of the intact
 /// neighbours, with the F fitted to these, as in the control; zero for a particle that has failed or has too
 /// few neighbours.
-fn hourglass_residual(input: &FieldInput<'_>, out: &mut Vec<f64>) -> Result<(), MissingColumn> {
+pub(crate) fn hourglass_residual(input: &FieldInput<'_>, out: &mut Vec<f64>) -> Result<(), MissingColumn> {
     let (view, _) = input.world.body_view(input.body);
     let Some(solid) = input.resources.solid(input.world.body(input.body).phase) else { return Ok(()) };
     let gradient = view.read::<DeformationGradient>()?;

@@ -41,7 +41,7 @@ pub use bodies::{BodyPass, SolidBodies, SolidBody, SolidPart};
 pub use constitutive::{Constitutive, SolidBlock, SolidColumns, SolidRows, SolidSum};
 pub use corrected_stress::{CorrectedStress, CorrectedStressRows};
 pub(crate) use damping::DampedSubSteps;
-pub(crate) use fields::fields;
+pub(crate) use fields::{fields, hourglass_residual};
 pub(crate) use fit::fit;
 pub use folded::{FoldedEnergy, FoldedMemory, FoldedRows, FoldedTerm, FoldedTermOfBodies};
 pub use hessian::{HessianDifference, HessianForm, HessianResidual, HessianStiffness};

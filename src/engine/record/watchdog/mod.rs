@@ -3,6 +3,7 @@
 mod bodies_inside;
 mod domain;
 mod energy_growth;
+mod free_modes;
 mod hourglass;
 mod particles_in;
 mod passing;

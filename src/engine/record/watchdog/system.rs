@@ -3,6 +3,7 @@
 use super::bodies_inside::BodiesInside;
 use super::domain::DomainCheck;
 use super::energy_growth::{EnergyGrowth, resolution};
+use super::free_modes::FreeModes;
 use super::hourglass::HourglassShare;
 use super::passing::PassingBodies;
 use super::remedies::Remedies;
@@ -29,6 +30,7 @@ struct Watchdog {
     passing: PassingBodies,
     inside: BodiesInside,
     soft: SoftUnderPressure,
+    free: FreeModes,
     remedies: Remedies,
     domain: Option<DomainCheck>,
     /// Checks that end in a warning are made with the frames, but not with the first one: a body at rest has
@@ -48,6 +50,7 @@ pub fn add_system(sim: &mut SimBuilder<'_>) {
         passing: PassingBodies::new(sim),
         inside: BodiesInside::new(sim),
         soft: SoftUnderPressure::new(sim),
+        free: FreeModes::new(sim),
         remedies: Remedies::new(sim),
         domain,
         frames: Trigger::after_interval(sim.scene().record_interval()),
@@ -78,6 +81,7 @@ impl Run for Watchdog {
             self.passing.look(step)?;
             self.inside.look(step)?;
             self.soft.look(step)?;
+            self.free.look(step)?;
             self.wrong_sign.warn(step, &self.remedies, at_end);
         }
         Ok(())
@@ -89,21 +93,21 @@ impl Run for Watchdog {
             &self.hourglass,
             &self.wrong_sign,
             (&self.passing.told, &self.inside.told),
-            &self.soft.told,
+            (&self.soft.told, &self.free.told),
             self.frames,
         ))
         .unwrap_or_default()
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        let Ok((energy, hourglass, wrong_sign, (passing, inside), soft, frames)) =
+        let Ok((energy, hourglass, wrong_sign, (passing, inside), (soft, free), frames)) =
             postcard::from_bytes(state)
         else {
             return false;
         };
         (self.energy, self.hourglass, self.wrong_sign) = (energy, hourglass, wrong_sign);
         (self.passing.told, self.inside.told) = (passing, inside);
-        self.soft.told = soft;
+        (self.soft.told, self.free.told) = (soft, free);
         self.frames.resume(frames);
         true
     }
