@@ -3,7 +3,7 @@
 use meshless::scene::Source;
 
 /// In the plane: metal between a floor and a tool that presses and shears it with friction that sticks, a
-/// horseshoe that closes on itself, a disc that jumps.
+/// blade thinner than a particle that falls on it, a horseshoe that closes on itself, a disc that jumps.
 pub fn touching() -> Source {
     let text = r#"(dimension: Two, gravity: (0.0, -0.1),
         materials: {
@@ -20,8 +20,11 @@ pub fn touching() -> Source {
             (name: "tool", material: "steel", shape: Box(min: (0.1, 0.3), max: (0.5, 0.5)), spacing: 0.05, formulation: Rigid()),
             (name: "disc", material: "steel", shape: Sphere(center: (2.3, 0.21), radius: 0.2), spacing: 0.05, velocity: (0.3, -0.5),
              formulation: Rigid(spin: (0, 0, 2))),
+            (name: "blade", material: "steel", shape: Rotate(shape: Box(min: (0.545, 0.305), max: (0.555, 0.5)), angle_degrees: 3),
+             spacing: 0.005, velocity: (0.0, -0.1), formulation: Rigid()),
         ],
         contacts: [
+            Contact(between: ("metal", "blade"), law: Penalty(), friction: 0.3, restitution: 0.7),
             Contact(between: ("metal", "floor"), law: Hertz(), friction: 0.8),
             Contact(between: ("metal", "tool"), law: Hertz(plane: Sphere), friction: 0.8, restitution: 0.3),
             Contact(between: ("horseshoe", "horseshoe"), law: Penalty(factor: 2.0), friction: 0.3),

@@ -93,7 +93,17 @@ impl ContactSides {
     /// reference configuration of the body. Where the body spans a period its ends are no surface: it
     /// continues beyond them.
     pub fn closest(&self, x: DVec3, tool: &RigidBody) -> SurfacePoint {
-        let at = tool.reference(self.near(x, tool));
+        self.closest_to(tool.reference(self.near(x, tool)), tool)
+    }
+
+    /// The same of a place of the body as it is at the start.
+    pub fn closest_at_start(&self, x: DVec3, tool: &RigidBody) -> SurfacePoint {
+        let center = tool.reference_center;
+        let image = if self.periodic.any() { center + self.periodic.minimal_image(x - center) } else { x };
+        self.closest_to(image, tool)
+    }
+
+    fn closest_to(&self, at: DVec3, tool: &RigidBody) -> SurfacePoint {
         let mut found = tool.surface.closest(at);
         for seam in &self.seams {
             let (axis, [min, max]) = (seam.axis(), seam.sides());

@@ -30,6 +30,8 @@ const STEADY: [f64; 2] = [0.01, 0.04];
 /// a touch. A step that is longer than the contact allows would put a point that touches for the first time
 /// too deep, and make energy.
 const AHEAD: f64 = 3.0;
+/// How far that may be, over the spacing: nearer facets are candidates, whenever they were last found.
+const FARTHEST: f64 = 0.5;
 /// Overlap over the spacing whose stiffness is taken for an imminent contact: the stiffness of laws may begin
 /// at zero.
 const EXPECTED: f64 = 0.05;
@@ -60,10 +62,23 @@ impl OfSkins<'_> {
         (of(OF_LANDING) * self.landing()).max(of(self.factor()) * self.stiffest)
     }
 
+    /// Squared frequency of a rigid body on areas that may soon touch it, 1/s2; `landing` is the sum of area,
+    /// m2 (m), times inverse mass of the body, 1/kg. In the step of the skin alone a light body would rebound
+    /// with more than it had.
+    pub fn of_landing_tool(&self, landing: f64) -> f64 {
+        let touch = Touch { overlap: EXPECTED * self.touch.length, ..self.touch };
+        (FREQUENCY_FACTOR / OF_LANDING).powi(2) * self.law.at(&touch).stiffness / self.usual * landing
+    }
+
+    /// How near a skin is to a touch, m, within the steps that a touch is expected ahead.
+    pub fn reach(speed: f64, dt: f64, spacing: f64) -> f64 {
+        // Nothing is known yet of the length of the first step.
+        if dt == 0.0 { f64::INFINITY } else { (AHEAD * speed * dt).min(FARTHEST * spacing) }
+    }
+
     /// The stiffness of touches that begin or end, or may do so soon; zero if that takes longer.
     fn landing(&self) -> f64 {
-        // Nothing is known yet of the length of the first step.
-        let is_near = self.gap.is_finite() && (self.dt == 0.0 || self.gap < AHEAD * self.speed * self.dt);
+        let is_near = self.gap.is_finite() && self.gap < Self::reach(self.speed, self.dt, self.touch.length);
         if self.stiffest > 0.0 || is_near && self.speed > 0.0 {
             let touch = Touch { overlap: EXPECTED * self.touch.length, ..self.touch };
             self.law.at(&touch).stiffness / self.usual

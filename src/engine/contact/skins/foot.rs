@@ -200,7 +200,9 @@ fn mean_normal(patch: &Patch, facet: u32, shares: [f64; 3]) -> DVec3 {
     let mut sum = DVec3::ZERO;
     for &other in skin.facets_at(first) {
         let vertices = skin.corners_of(other);
-        if second.is_some_and(|second| !vertices.contains(&second)) {
+        // A foot far away may lie where the patch ends.
+        let is_known = vertices.iter().all(|vertex| patch.has(*vertex));
+        if !is_known || second.is_some_and(|second| !vertices.contains(&second)) {
             continue;
         }
         let corners = patch.places(other);

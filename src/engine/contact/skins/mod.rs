@@ -6,13 +6,19 @@ mod near_tool;
 
 mod points;
 
+mod foot;
+
+mod skin_end;
+
+mod tool_edges;
+
+mod tips;
+
 mod on_tool;
 
 mod displaced;
 
 mod near_skins;
-
-mod foot;
 
 mod side;
 

@@ -2,8 +2,8 @@
 //!
 //! The energy is the integral of the law's energy over the skin, by points with areas of the reference
 //! configuration; the overlap is the exact distance of a point from the surface. `skin_points` places the
-//! points. Forces act on both bodies at the vertices of the skin, summed from the points around each; dashpot
-//! and friction belong to vertices as well.
+//! points; `tips` adds those of what is finer than they are. Forces act on both bodies at the vertices of the
+//! skin, summed from the points around each; dashpot and friction belong to vertices as well.
 
 use std::sync::Arc;
 
@@ -11,11 +11,13 @@ use glam::DVec3;
 
 use super::near_tool::NearTool;
 use super::points::{Extremes, FacetPart, Points, PressPass, ToolView, VertexPress, touch_of};
+use super::tips::Tips;
 use crate::contact::active::ActiveContacts;
 use crate::contact::bodies::{ContactSides, MotionBounds, failed};
 use crate::contact::laws::Touch;
 use crate::contact::response::time_step::{self, OfSkins, Touches};
 use crate::contact::response::{ContactEnergy, ContactState, History, Interaction, Losses, PairKey};
+use crate::notation::quantity;
 use crate::parallel::{BlockSum, for_each_block, sum_over_blocks};
 use crate::rigid::{RigidBodies, RigidBody, Wrench};
 use crate::schedule::{Step, StepError};
@@ -31,6 +33,7 @@ pub(in crate::contact) struct SkinOnTool {
     pub sides: ContactSides,
     points: Points,
     near: NearTool,
+    tips: Tips,
     /// Position of the tool relative to every vertex of the patch, and the points of every facet near it that
     /// may touch.
     seen: Vec<ToolView>,
@@ -42,6 +45,8 @@ pub(in crate::contact) struct SkinOnTool {
     even: Vec<f64>,
     /// Vertices that touch, with their numbers in the patch, and what dashpot and friction add there, N.
     touching: Vec<PairKey>,
+    /// Whether the user has been warned of a sharp edge.
+    pub told: bool,
     pub contacts: ActiveContacts<u32, VertexFriction, ()>,
 }
 
@@ -84,12 +89,14 @@ impl SkinOnTool {
             sides,
             points: Points::new(skin.facets.axes),
             near: NearTool::new(&skin),
+            tips: Tips::default(),
             seen: Vec::with_capacity(vertices),
             reached: Vec::with_capacity(facets),
             on_facets: Vec::with_capacity(facets),
             pressed: Vec::with_capacity(vertices),
             even: Vec::with_capacity(vertices),
             touching: Vec::with_capacity(vertices),
+            told: false,
             patch: Patch::new(skin),
             contacts,
         }
@@ -139,7 +146,8 @@ impl SkinOnTool {
         }
         let wanted = Wanted { mobility: self.interaction.damping_ratio > 0.0, gradients: false };
         self.patch.update(&view, dt, wanted);
-        let Extremes { gap, stiffest } = self.press(tool, dt);
+        let reach = OfSkins::reach(speeds[0] + speeds[1], dt, skin.spacing);
+        let Extremes { gap, stiffest, landing, is_split } = self.press(tool, reach, dt);
         let mut energies = if self.interaction.is_elastic() {
             ContactEnergy::default()
         } else {
@@ -153,18 +161,34 @@ impl SkinOnTool {
         let (law, speed) = (&*self.interaction.law, speeds[0] + speeds[1]);
         let (stiffest, gap) = (stiffest.0, gap.0);
         let keeps_reference = time_step::keeps_reference(step, skin.body);
-        let stiffness = OfSkins { law, touch, usual, stiffest, gap, speed, dt, keeps_reference }.stiffness();
-        let squared = stiffness * skin.lightness + of_tool;
+        let of_skins = OfSkins { law, touch, usual, stiffest, gap, speed, dt, keeps_reference };
+        let of_touching = of_skins.stiffness() * skin.lightness + of_tool;
+        let squared = of_touching.max(of_skins.of_landing_tool(landing));
         let touches = Touches { squared, stored: energies.stored, speed, reach: skin.spacing };
         time_step::propose(step, [skin.body, self.tool], &touches)?;
+        if is_split && !std::mem::replace(&mut self.told, true) {
+            self.warn_of_edge(step);
+        }
         Ok((energies, on_tool))
     }
 
-    /// Computes what presses on the vertices.
-    fn press(&mut self, tool: &RigidBody, dt: f64) -> Extremes {
+    /// Warns of a sharp edge that has been pressed into the body.
+    fn warn_of_edge(&self, step: &mut Step<'_>) {
+        let [body, tool] = [self.patch.skin.body, self.tool].map(|id| &step.world.body(id).name[..]);
+        let time = quantity(step.clock.time, "s");
+        step.warnings.push(format!(
+            "an edge of `{tool}`, sharper than 70 degrees or thin, is pressed into `{body}` at {time}: particles do not part before it, and its \
+             force may be off by half while it is less than some ten spacings deep; round the edge to some spacings, or take \
+             smaller particles in `{body}`"
+        ));
+    }
+
+    /// Computes what presses on the vertices; what is nearer than `reach`, m, may soon.
+    fn press(&mut self, tool: &RigidBody, reach: f64, dt: f64) -> Extremes {
         self.look(tool, dt);
-        let mut extremes = self.press_facets(tool, dt);
+        let mut extremes = self.press_facets(tool, reach, dt);
         self.gather();
+        extremes.add(&self.press_tips(tool, reach, dt));
         extremes.add(&self.press_vertices(tool, dt));
         extremes
     }
@@ -183,7 +207,7 @@ impl SkinOnTool {
     }
 
     /// Computes the contact forces of the points of every facet near the tool on its vertices.
-    fn press_facets(&mut self, tool: &RigidBody, dt: f64) -> Extremes {
+    fn press_facets(&mut self, tool: &RigidBody, reach: f64, dt: f64) -> Extremes {
         let Self { interaction, patch, sides, points, near, seen, reached, on_facets, .. } = self;
         let (patch, points, seen) = (&*patch, &*points, &*seen);
         let on = PressPass::new(interaction, patch, sides, tool, dt);
@@ -203,10 +227,20 @@ impl SkinOnTool {
                 } else {
                     FacetPart::No(f64::INFINITY)
                 };
-                match *reached {
-                    FacetPart::No(distance) => extremes.gap.add_length(distance),
-                    FacetPart::Evenly => {}
-                    reached => *on_facet = points.press(&on, facet, reached, seen, &mut extremes),
+                let touches_soon = match *reached {
+                    FacetPart::No(distance) => {
+                        extremes.gap.add_length(distance);
+                        distance < reach
+                    }
+                    FacetPart::Evenly => false,
+                    reached => {
+                        *on_facet = points.press(&on, facet, reached, seen, &mut extremes);
+                        on_facet.iter().all(|press| press.area == 0.0)
+                    }
+                };
+                if touches_soon && !tool.is_driven() {
+                    let mobility = tool.inverse_mass_at(on.sides.near(a.place, tool), seen[0].normal);
+                    extremes.landing += patch.skin.measure[facet as usize] * mobility;
                 }
             }
             extremes
@@ -230,6 +264,12 @@ impl SkinOnTool {
                 _ => numbers[..axes].iter().zip(on).for_each(|(&number, on)| pressed[number].join(on)),
             }
         }
+    }
+
+    /// Adds the forces of sharp edges and tips of the tool to the vertices.
+    fn press_tips(&mut self, tool: &RigidBody, reach: f64, dt: f64) -> Extremes {
+        let Self { interaction, patch, sides, near, tips, pressed, .. } = self;
+        tips.press(&PressPass::new(interaction, patch, sides, tool, dt), &near.facets, reach, pressed)
     }
 
     /// Adds the forces of the areas of even facets to their vertices.

@@ -124,12 +124,18 @@ pub(super) struct Extremes {
     pub gap: MinimumLength,
     /// Stiffness over the area, N/m3 (N/m2 in two dimensions).
     pub stiffest: Maximum,
+    /// Sum of the areas, m2 (m), that may soon touch, each times the inverse mass of the tool there, 1/kg.
+    pub landing: f64,
+    /// Whether a sharp edge of the tool draws the skin along with it.
+    pub is_split: bool,
 }
 
 impl BlockSum for Extremes {
     fn add(&mut self, next: &Self) {
         self.gap.add(&next.gap);
         self.stiffest.add(&next.stiffest);
+        self.landing += next.landing;
+        self.is_split |= next.is_split;
     }
 }
 
@@ -142,12 +148,12 @@ pub(super) struct Points {
 /// Data common to all points of a step.
 pub(super) struct PressPass<'a> {
     interaction: &'a Interaction,
-    patch: &'a Patch,
-    sides: &'a ContactSides,
-    tool: &'a RigidBody,
+    pub patch: &'a Patch,
+    pub sides: &'a ContactSides,
+    pub tool: &'a RigidBody,
     /// The law at an overlap of zero, and the area for which it holds, m2 (m).
     touch: Touch,
-    usual: f64,
+    pub usual: f64,
     /// Length of the step, s.
     dt: f64,
 }

@@ -206,13 +206,18 @@ impl Touching {
         };
         let histories: Vec<_> = histories.iter().map(|histories| histories.entries().to_vec()).collect();
         let patches: Vec<_> = self.patches().iter().map(Patch::saved).collect();
+        let is_told = matches!(self, Self::SkinOnTool(contact) if contact.told);
         let is_empty = histories.iter().all(Vec::is_empty) && patches.iter().all(Vec::is_empty);
-        if is_empty { Saved::default() } else { (histories, patches) }
+        if is_empty { (Vec::new(), Vec::new(), is_told) } else { (histories, patches, is_told) }
     }
 
-    pub fn restore(&mut self, (histories, patches): Saved) -> bool {
+    pub fn restore(&mut self, (histories, patches, is_told): Saved) -> bool {
+        if let Self::SkinOnTool(contact) = self {
+            contact.told = is_told;
+        }
         if histories.is_empty() && patches.is_empty() {
-            return self.saved() == Saved::default();
+            let (own, patches, _) = self.saved();
+            return own.is_empty() && patches.is_empty();
         }
         let own: &mut [&mut Histories] = match self {
             Self::Particles(contact) => &mut [&mut contact.contacts.histories],
@@ -234,5 +239,5 @@ impl Touching {
     }
 }
 
-/// Histories and the last places of skins.
-pub(super) type Saved = (Vec<Vec<(PairKey, History)>>, Vec<Vec<(u32, Last)>>);
+/// Histories, the last places of skins, and whether the user has been warned.
+pub(super) type Saved = (Vec<Vec<(PairKey, History)>>, Vec<Vec<(u32, Last)>>, bool);

@@ -18,6 +18,7 @@ mod rolling;
 mod skin_energy;
 mod skins;
 mod spinning;
+mod thin_tools;
 mod walls;
 
 use glam::DVec3;
