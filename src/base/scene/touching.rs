@@ -1,13 +1,22 @@
 //! The pairs of bodies of a scene that have a contact.
 
-/// The pairs of bodies that have a contact, by their names.
+use std::collections::BTreeMap;
+
+/// The pairs of bodies that have a contact: by the name of each body those of its partners.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct TouchingPairs(Vec<(String, String)>);
+pub struct TouchingPairs(BTreeMap<String, Vec<String>>);
 
 impl TouchingPairs {
     /// These pairs.
-    pub const fn new(pairs: Vec<(String, String)>) -> Self {
-        Self(pairs)
+    pub fn new(pairs: Vec<(String, String)>) -> Self {
+        let mut partners: BTreeMap<String, Vec<String>> = BTreeMap::new();
+        for (one, other) in pairs {
+            if one != other {
+                partners.entry(other.clone()).or_default().push(one.clone());
+            }
+            partners.entry(one).or_default().push(other);
+        }
+        Self(partners)
     }
 
     /// Whether there is a contact between two bodies, or of one with itself.
@@ -17,16 +26,12 @@ impl TouchingPairs {
 
     /// Whether a body has any contact.
     pub fn names(&self, body: &str) -> bool {
-        self.partners(body).next().is_some()
+        self.0.contains_key(body)
     }
 
     /// The bodies with which a body has a contact; itself if it has contact with itself.
-    pub fn partners<'a>(&'a self, body: &'a str) -> impl Iterator<Item = &'a str> {
-        self.0.iter().filter_map(move |(one, other)| match () {
-            () if one == body => Some(other.as_str()),
-            () if other == body => Some(one.as_str()),
-            () => None,
-        })
+    pub fn partners(&self, body: &str) -> impl Iterator<Item = &str> {
+        self.0.get(body).into_iter().flatten().map(String::as_str)
     }
 }
 
@@ -37,7 +42,8 @@ mod tests {
     #[test]
     fn pairs_have_no_order() {
         let pair = |a: &str, b: &str| (a.to_owned(), b.to_owned());
-        let touching = TouchingPairs(vec![pair("ball", "floor"), pair("ball", "ball"), pair("wall", "ball")]);
+        let touching =
+            TouchingPairs::new(vec![pair("ball", "floor"), pair("ball", "ball"), pair("wall", "ball")]);
         assert!(
             touching.has("floor", "ball") && touching.has("ball", "wall") && touching.has("ball", "ball")
         );

@@ -51,8 +51,8 @@ impl ParticleContact {
         self.search.min_period()
     }
 
-    /// Whether nothing touches and no particles are near each other; the boxes around both bodies tell nothing
-    /// of their images.
+    /// Whether nothing touches and no particles are near each other; the boxes around both bodies tell
+    /// nothing of their images.
     pub fn is_idle(&self) -> bool {
         let is_empty = self.search.pairs().is_empty() && self.contacts.histories.is_empty();
         is_empty && self.mirror == Map::IDENTITY

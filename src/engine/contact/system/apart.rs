@@ -10,12 +10,14 @@ use glam::DVec3;
 
 use super::touching::Touching;
 use crate::contact::bodies::MotionBounds;
+use crate::contact::response::time_step::{self, Touches};
 use crate::contact::skins::{gap_of, speed_of_points};
 use crate::neighbors::Periodic;
 use crate::rigid::RigidBodies;
 use crate::schedule::{Step, StepError};
 use crate::shapes::Aabb;
 use crate::skins::{Skin, SkinColumns};
+use crate::symmetry::Map;
 use crate::world::{BodyId, Position};
 
 /// Gap over the larger spacing beyond which two bodies are apart: all searches of what may touch find nothing
@@ -106,12 +108,13 @@ impl InContact {
 
 /// How far apart the two bodies of a pair are.
 pub(super) struct PairDistance {
-    /// Numbers of the two among the bodies in contact.
-    bodies: [usize; 2],
+    pub pair: [BodyId; 2],
+    /// Their numbers among the bodies in contact.
+    numbers: [usize; 2],
     /// The larger spacing, m.
     spacing: f64,
     /// Distance at which particles of both just touch, m; none between rigid bodies.
-    pub reach: Option<f64>,
+    reach: Option<f64>,
     is_apart: bool,
     /// How far both may still move until this is looked at again, m.
     left: f64,
@@ -123,7 +126,8 @@ impl PairDistance {
         let [first, second] = pair.bodies();
         let number = |body: BodyId| bodies.partition_point(|known| known.body < body);
         Self {
-            bodies: [number(first), number(second)],
+            pair: [first, second],
+            numbers: [number(first), number(second)],
             spacing: spacing(first).max(spacing(second)),
             reach: pair.reach(),
             is_apart: false,
@@ -133,7 +137,7 @@ impl PairDistance {
 
     /// Bounds of the motion of both.
     pub fn motion(&self, bodies: &[InContact]) -> [MotionBounds; 2] {
-        self.bodies.map(|number| bodies[number].motion)
+        self.numbers.map(|number| bodies[number].motion)
     }
 
     /// Takes in a step of the pair, and says whether its bodies are apart. What is near or touches wakes them
@@ -148,7 +152,7 @@ impl PairDistance {
         self.left -= speed_of_points(self.motion(bodies)) * step.clock.dt;
         // What is not a number must not keep bodies apart.
         if self.left.is_nan() || self.left <= 0.0 {
-            let [first, second] = self.bodies;
+            let [first, second] = self.numbers;
             let gap = match (bodies[first].around(step)?, bodies[second].around(step)?) {
                 (Some(first), Some(second)) => gap_of(&first, &second, periodic),
                 _ => 0.0,
@@ -161,5 +165,19 @@ impl PairDistance {
             }
         }
         Ok(self.is_apart)
+    }
+
+    /// Proposes the limits of a pair whose bodies are apart.
+    pub fn limit(&self, pair: &Touching, bodies: &[InContact], step: &mut Step<'_>) -> Result<(), StepError> {
+        let motion = self.motion(bodies);
+        match (self.reach, pair) {
+            (Some(reach), _) => {
+                let speed = MotionBounds::approach(motion, &Map::IDENTITY);
+                let touches = Touches { squared: 0.0, stored: 0.0, speed, reach };
+                time_step::propose(step, self.pair, &touches)
+            }
+            (None, Touching::Surface(contact)) => contact.limit_apart(step, motion),
+            (None, _) => Ok(()),
+        }
     }
 }

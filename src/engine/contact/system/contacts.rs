@@ -169,7 +169,7 @@ impl Contacts {
     /// Whether a contact acts in this step: not one of a body that has been removed from the run.
     fn acts_now(&self, k: usize) -> bool {
         let is_there = |body: &BodyId| !self.gone.contains(body);
-        self.acts[k].now(&self.fragile) && self.touching[k].bodies().iter().all(is_there)
+        self.acts[k].now(&self.fragile) && self.distances[k].pair.iter().all(is_there)
     }
 
     /// Chooses the contacts that act in this step, of bodies that are near each other. The others only limit
@@ -183,7 +183,7 @@ impl Contacts {
             let Self { touching, distances, bodies, periodic, acting, .. } = self;
             let (pair, distance) = (&mut touching[k], &mut distances[k]);
             if distance.follow(pair, bodies, periodic, step)? {
-                pair.limit_apart(step, distance.motion(bodies), distance.reach)?;
+                distance.limit(pair, bodies, step)?;
             } else {
                 acting.push(k as u32);
             }

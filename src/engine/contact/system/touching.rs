@@ -5,13 +5,11 @@ use std::sync::Arc;
 use crate::contact::active::ContactNodes;
 use crate::contact::bodies::{MemberParticles, MotionBounds, NodeTurn};
 use crate::contact::particles::ParticleContact;
-use crate::contact::response::time_step::{self, Touches};
 use crate::contact::response::{ContactEnergy, Histories, History, PairKey};
 use crate::contact::skins::{SkinContact, SkinOnTool, SkinPair};
 use crate::contact::tools::{CoupledResponse, SurfaceContact};
 use crate::schedule::{Step, StepError};
 use crate::skins::{Last, Patch, Skin};
-use crate::symmetry::Map;
 use crate::world::BodyId;
 
 /// Two bodies that touch.
@@ -60,24 +58,6 @@ impl Touching {
             Self::Surface(contact) => contact.forget(),
             Self::SkinOnTool(contact) => contact.forget(),
             Self::Skins(contact) => contact.near().forget(),
-        }
-    }
-
-    /// Proposes the limits of bodies that are apart.
-    pub fn limit_apart(
-        &self,
-        step: &mut Step<'_>,
-        motion: [MotionBounds; 2],
-        reach: Option<f64>,
-    ) -> Result<(), StepError> {
-        match (self, reach) {
-            (_, Some(reach)) => {
-                let speed = MotionBounds::approach(motion, &Map::IDENTITY);
-                let touches = Touches { squared: 0.0, stored: 0.0, speed, reach };
-                time_step::propose(step, self.bodies(), &touches)
-            }
-            (Self::Surface(contact), None) => contact.limit_apart(step, motion),
-            (_, None) => Ok(()),
         }
     }
 
