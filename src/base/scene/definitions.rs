@@ -11,7 +11,6 @@ use super::literal::refused;
 use super::symbols::Symbols;
 use super::table::Table;
 use super::tree::{Node, NodeKind};
-use crate::notation::number;
 
 /// The names that the scene `root` defines. Files of tables are relative to `folder`.
 ///
@@ -77,11 +76,8 @@ fn evaluate(parameters: &[Entry<'_>], problems: &mut Vec<Problem>) -> BTreeMap<S
                 return true;
             }
             let value = match &node.kind {
-                NodeKind::Number { value, .. } if let Some(required) = refused(*value) => {
-                    Err(Problem::at_span(
-                        node.span.clone(),
-                        format!("a number must be {required}, found {}", number(*value)),
-                    ))
+                NodeKind::Number { value, .. } if let Some(fault) = refused(*value) => {
+                    Err(Problem::at_span(node.span.clone(), format!("a number {fault}")))
                 }
                 NodeKind::Number { value, .. } => Ok(*value),
                 NodeKind::Text { value, .. } => {

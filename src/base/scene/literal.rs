@@ -4,6 +4,7 @@ use super::Problem;
 use super::slips::attached_unit;
 use super::syntax::Reader;
 use super::tree::NodeKind;
+use crate::notation::number;
 
 impl Reader<'_> {
     pub(super) fn number(&mut self) -> Result<NodeKind, Problem> {
@@ -146,14 +147,15 @@ impl Reader<'_> {
     }
 }
 
-/// Why a run cannot compute with a value, as "must be ..."; none if it can. Numbers whose squares are
-/// infinite are refused too, as energies are sums of squares.
-pub(super) fn refused(value: f64) -> Option<&'static str> {
-    match value.abs() {
-        size if size <= 1e150 => None,
-        size if size.is_finite() => Some("between -1e150 and 1e150"),
-        _ => Some("finite"),
-    }
+/// What is wrong with a value that no run can compute with, as "must be ..., found ..."; none if one can.
+/// Numbers whose squares are infinite are refused too, as energies are sums of squares.
+pub(super) fn refused(value: f64) -> Option<String> {
+    let required = match value.abs() {
+        size if size <= 1e150 => return None,
+        size if size.is_finite() => "between -1e150 and 1e150",
+        _ => "finite",
+    };
+    Some(format!("must be {required}, found {}", number(value)))
 }
 
 /// A number of RON: decimal with `_` between digits, or hexadecimal, octal, binary.

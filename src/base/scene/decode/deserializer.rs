@@ -6,7 +6,6 @@ use super::access::{Entries, ItemParts, MapEntries, StructValues};
 use super::error::Error;
 use super::value::{ITEM, NodeValue, Outcome};
 use super::variant::Variant;
-use crate::notation::number;
 use crate::scene::Problem;
 use crate::scene::literal::refused;
 use crate::scene::names::{nearest, unknown};
@@ -96,9 +95,8 @@ impl<'a> Deserializer<'a> for NodeValue<'a> {
 
     fn deserialize_any<V: Visitor<'a>>(self, visitor: V) -> Outcome<V::Value> {
         let result = match &self.node.kind {
-            NodeKind::Number { value, .. } if let Some(required) = refused(*value) => {
-                let message = format!("a number must be {required}, found {}", number(*value));
-                return self.here(Err(Error::Message(message)));
+            NodeKind::Number { value, .. } if let Some(fault) = refused(*value) => {
+                return self.here(Err(Error::Message(format!("a number {fault}"))));
             }
             NodeKind::Number { integer: Some(integer), value } => {
                 match (u64::try_from(*integer), i64::try_from(*integer)) {

@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use super::ExpressionError;
 use super::functions::{BINARY, Binary, CONSTANTS, UNARY, Unary, VARIABLES};
-use crate::notation::number;
 use crate::scene::literal::refused;
 use crate::scene::names::nearest;
 use crate::scene::slips::is_unit;
@@ -92,9 +91,8 @@ fn run(
         return Err(compiler.unexpected("an operator or the end"));
     }
     match compiler.program.as_slice() {
-        [Op::Constant(value)] if let Some(required) = refused(*value) => {
-            let message = format!("the value must be {required}, found {}", number(*value));
-            Err(compiler.error(0..text.len(), message, ""))
+        [Op::Constant(value)] if let Some(fault) = refused(*value) => {
+            Err(compiler.error(0..text.len(), format!("the value {fault}"), ""))
         }
         _ => Ok(Program { ops: compiler.program, tables: compiler.tables }),
     }

@@ -101,7 +101,7 @@ fn a_recorder_hears_all_in_order() {
     let sim = run(built.unwrap());
     // The beam has no hourglass control.
     let warnings = sim.warnings();
-    assert!(warnings.iter().all(|text| text.contains("hourglass modes")), "{warnings:?}");
+    assert!(matches!(warnings, [text] if text.contains("hourglass modes")), "{warnings:?}");
     let told = std::mem::take(&mut *TOLD.lock().unwrap());
     assert_eq!(told[0], "start cantilever false 0");
     assert_eq!(told[1], "fields von_mises[Pa] velocity[m/s] pressure[Pa]");
@@ -117,7 +117,7 @@ fn a_recorder_hears_all_in_order() {
     assert!(told.iter().any(|t| t.starts_with("samples 10 probe/tip/x probe/tip/y")));
     let flushed = told.windows(2).filter(|w| w[0].starts_with("frame") && w[1] == "flush").count();
     assert_eq!(flushed, 6);
-    assert_eq!(told.last().unwrap(), &format!("finish {}", warnings.len()));
+    assert_eq!(told.last().unwrap(), "finish 1");
 }
 
 #[test]
