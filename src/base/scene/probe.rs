@@ -25,8 +25,10 @@ pub struct Probe {
     #[serde(default)]
     pub line: Option<Line>,
     /// With `at` or `line`: the solid or rigid body to which the points belong, given by their initial
-    /// positions. They move with the body, and on its surface they show the surface values. Without it the
-    /// points are fixed in space.
+    /// positions. They move with the body, and on its surface they show the surface values. A
+    /// `PressureSensor` turns with the wall or body that it follows, and so does a `WaterLevel` that has a
+    /// direction `along`; the point of the latter may lie beside the body, such as in the middle of a tank
+    /// that moves. Without it the points are fixed in space.
     #[serde(default)]
     pub follows: Option<String>,
     /// Reduction over the particles of `on`, or over its `surface`. The default is the mean, for forces the
@@ -111,8 +113,8 @@ pub enum Quantity {
     /// part of a wall it is 6 and 3 % off in water 10 and 20 particles deep, as flows act below the surface
     /// and the tension that this makes along the wall counts where the part ends: use `FluidForce` there.
     Force,
-    /// Torque of the same forces about the centre of mass of the selection \[N m\]. A half-space has none:
-    /// use `Moment`. On a part of a wall use `FluidTorque`.
+    /// Torque of the same forces about the centre of mass of the selection, of walls, which have no mass, about
+    /// that of their volume \[N m\]. A half-space has none: use `Moment`. On a part of a wall use `FluidTorque`.
     Torque,
     /// Moment of the same forces about a fixed point \[N m\]. On a part of a wall use `FluidTorque`.
     Moment {

@@ -76,8 +76,10 @@ fn place(probe: &Probe, i: usize) -> Option<Problem> {
 fn options(probe: &Probe, i: usize) -> Option<Problem> {
     let is_of_field = probe.quantity.at_point().is_none();
     let extreme = matches!(probe.take, Some(Reduction::Minimum | Reduction::Maximum));
-    let (field, message, help) = if probe.follows.is_some() && (probe.on.is_some() || !is_of_field) {
-        let help = "points are given by `at` or `line`; fields, positions, displacements and velocities have values at points of bodies";
+    let is_carried = is_of_field
+        || matches!(probe.quantity, Quantity::WaterLevel { .. } | Quantity::PressureSensor { .. });
+    let (field, message, help) = if probe.follows.is_some() && (probe.on.is_some() || !is_carried) {
+        let help = "points are given by `at` or `line`; fields, positions, displacements and velocities have values at points of bodies, and bodies carry a `PressureSensor` or a `WaterLevel` along";
         ("follows", "`follows` needs a point of a body and a field there", help)
     } else if probe.take.is_some()
         && (probe.on.is_none() || !is_of_field || probe.quantity == Quantity::Distance)

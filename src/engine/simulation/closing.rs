@@ -7,6 +7,7 @@ use super::{RunError, SaveError, Simulation, Summary};
 use crate::notation::quantity;
 use crate::record::{Existing, Output, RecordError, write_atomically};
 use crate::scene::Source;
+use crate::world::BodyId;
 
 /// Relative balance error of the energy ledger at the end that is worth a warning.
 const BALANCE_WARNING: f64 = 1e-2;
@@ -61,6 +62,7 @@ impl Simulation {
     pub fn finish(&mut self) -> Result<Summary, RunError> {
         self.warn_of_balance();
         self.warn_of_empty_probes();
+        self.warn_of_left_probes();
         if !self.output().is_some_and(|output| output.has_begun()) {
             return Ok(self.summary());
         }
@@ -106,6 +108,23 @@ impl Simulation {
         };
         let texts: Vec<String> =
             self.output().map_or_else(Vec::new, |output| output.empty_probes().map(of).collect());
+        self.warn_once(texts);
+    }
+
+    /// Sensors stay where their walls have been.
+    fn warn_of_left_probes(&mut self) {
+        let of = |(name, body): (&str, BodyId)| {
+            let body = &self.world.body(body).name;
+            format!(
+                "probe `{name}` has lain in `{body}`, which has moved over it or away from it: its place is fixed in space, and what it shows is not the pressure on `{body}`; `follows: \"{body}\"` takes it along"
+            )
+        };
+        let texts: Vec<String> =
+            self.output().map_or_else(Vec::new, |output| output.left_probes().map(of).collect());
+        self.warn_once(texts);
+    }
+
+    fn warn_once(&mut self, texts: Vec<String>) {
         for text in texts {
             if !self.warnings.contains(&text) {
                 self.warnings.push(text);

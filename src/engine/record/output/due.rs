@@ -12,7 +12,7 @@ use crate::record::{BodyInfo, NamedUnit, RecordError, Recorder, RunInfo, Sample,
 use crate::scene::Problem;
 use crate::schedule::Trigger;
 use crate::schedule::{Clock, Ledger, Step, StepError};
-use crate::world::World;
+use crate::world::{BodyId, World};
 
 /// Facts of the scene for recordings.
 pub(super) struct SceneInfo {
@@ -283,6 +283,11 @@ impl Output {
     /// may.
     pub fn empty_probes(&self) -> impl Iterator<Item = &str> {
         self.tracks.iter().skip(1).filter(|track| track.has_found_nothing()).map(|track| track.name.as_str())
+    }
+
+    /// Names of the probes that lay in a wall or body which has moved away from them, and these bodies.
+    pub fn left_probes(&self) -> impl Iterator<Item = (&str, BodyId)> {
+        self.tracks.iter().skip(1).filter_map(|track| Some((track.name.as_str(), track.left_by()?)))
     }
 
     /// Whether files are open or have been.

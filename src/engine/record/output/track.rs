@@ -11,6 +11,7 @@ use crate::record::RecordError;
 use crate::record::probe::{EnergyColumns, Gauge, ResolvedProbe};
 use crate::schedule::Trigger;
 use crate::schedule::{Ledger, Step, StepError};
+use crate::world::BodyId;
 
 /// A number for recorders: path of the series, unit, value.
 pub(super) type OwnedSample = (String, &'static str, f64);
@@ -75,6 +76,11 @@ impl Track {
         let mut ends = extremes.iter().flat_map(|extreme| [extreme.min, extreme.max]);
         let is_empty = !extremes.is_empty() && ends.all(|end| self.gauge.is_of_nothing(end));
         !self.may_be_empty && self.last.is_some() && is_empty
+    }
+
+    /// The wall or body in which its gauge lay and which has moved away from it.
+    pub fn left_by(&self) -> Option<BodyId> {
+        self.gauge.left_by()
     }
 
     /// Names of the particle columns that it reads.

@@ -9,7 +9,7 @@ use crate::fields::ChosenField;
 use crate::plugin::SetupError;
 use crate::scene::Problem;
 use crate::schedule::Resources;
-use crate::world::{MissingColumn, World};
+use crate::world::{BodyId, MissingColumn, World};
 
 /// The instrument of a probe.
 pub enum Gauge {
@@ -52,6 +52,11 @@ impl Gauge {
     pub fn is_of_nothing(&self, number: f64) -> bool {
         let known = if let Self::Measure(gauge) = self { gauge.of_nothing() } else { None };
         number.is_nan() || known == Some(number)
+    }
+
+    /// The wall or body in which it lay and which has moved away from it.
+    pub fn left_by(&self) -> Option<BodyId> {
+        if let Self::Measure(gauge) = self { gauge.left_by() } else { None }
     }
 
     /// Measures; nothing for energies.

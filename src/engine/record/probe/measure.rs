@@ -1,7 +1,7 @@
 //! Measurements of probes that are neither a field of particles nor an energy.
 
 use crate::schedule::Resources;
-use crate::world::{MissingColumn, World};
+use crate::world::{BodyId, MissingColumn, World};
 
 /// Numbers that are taken from the particles at an instant.
 pub trait Measure: Send + Sync {
@@ -10,6 +10,11 @@ pub trait Measure: Send + Sync {
 
     /// What all numbers are where there is nothing to measure, if that is not NaN.
     fn of_nothing(&self) -> Option<f64> {
+        None
+    }
+
+    /// The wall or body in which it lay and which has moved away from it.
+    fn left_by(&self) -> Option<BodyId> {
         None
     }
 

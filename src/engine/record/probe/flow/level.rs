@@ -5,10 +5,11 @@
 
 use glam::DVec3;
 
+use super::carrier::Carrier;
 use crate::formulations::fluid::FlowCloud;
 use crate::record::probe::measure::Measure;
 use crate::schedule::Resources;
-use crate::world::{Column, MissingColumn, Position, World};
+use crate::world::{MissingColumn, World};
 
 /// Steps along the line in a support radius.
 const STEPS: f64 = 12.0;
@@ -20,6 +21,10 @@ pub struct LevelGauge {
     pub(super) at: DVec3,
     /// Unit vector along the line.
     pub(super) up: DVec3,
+    /// What carries it along; without it the line stays where it is.
+    pub(super) carrier: Option<Carrier>,
+    /// Whether the line turns with what carries it: its direction is a stated one, and not up.
+    pub(super) turns: bool,
 }
 
 /// A particle near the line.
@@ -41,50 +46,51 @@ impl Measure for LevelGauge {
     }
 
     fn needs(&self) -> Vec<&'static str> {
-        vec![Position::NAME]
+        Carrier::NEEDS.to_vec()
     }
 
-    fn read(&self, _: &World, resources: &Resources) -> Result<Vec<f64>, MissingColumn> {
+    fn read(&self, world: &World, resources: &Resources) -> Result<Vec<f64>, MissingColumn> {
         let Some(cloud) = FlowCloud::whole(resources) else { return Ok(vec![f64::NAN; 2]) };
-        Ok(self.heights(&cloud).to_vec())
+        let Some(carrier) = &self.carrier else { return Ok(water_levels(&cloud, self.at, self.up).to_vec()) };
+        let Some(carried) = carrier.carried(world)? else { return Ok(vec![f64::NAN; 2]) };
+        let up = if self.turns { carried.along(self.up) } else { self.up };
+        Ok(water_levels(&cloud, carried.place, up).to_vec())
     }
 }
 
 /// Height of the surface of fluids above a point, m; `up` is a unit vector.
 pub fn water_level(cloud: &FlowCloud, at: DVec3, up: DVec3) -> f64 {
-    LevelGauge { at, up }.heights(cloud)[0]
+    water_levels(cloud, at, up)[0]
 }
 
-impl LevelGauge {
-    /// Height of the surface and length of the line that is wet, m.
-    fn heights(&self, cloud: &FlowCloud) -> [f64; 2] {
-        let near = self.near(cloud);
-        let top = near.iter().filter(|near| near.fluid).map(|near| near.height).fold(0.0, f64::max);
-        let step = cloud.kernel.support / STEPS;
-        let last = ((top + cloud.kernel.support) / step).ceil() as usize;
-        let excess: Vec<f64> = (0..=last).map(|k| excess(cloud, &near, k as f64 * step)).collect();
-        let (mut level, mut wet) = (0.0, 0.0);
-        for (k, pair) in excess.windows(2).enumerate() {
-            let (a, b) = (pair[0], pair[1]);
-            wet += step * share_above_zero(a, b);
-            if a > 0.0 && b <= 0.0 {
-                level = step * (k as f64 + a / (a - b));
-            }
+/// The same, and the length of the line that is wet, m.
+fn water_levels(cloud: &FlowCloud, at: DVec3, up: DVec3) -> [f64; 2] {
+    let near = near_line(cloud, at, up);
+    let top = near.iter().filter(|near| near.fluid).map(|near| near.height).fold(0.0, f64::max);
+    let step = cloud.kernel.support / STEPS;
+    let last = ((top + cloud.kernel.support) / step).ceil() as usize;
+    let excess: Vec<f64> = (0..=last).map(|k| excess(cloud, &near, k as f64 * step)).collect();
+    let (mut level, mut wet) = (0.0, 0.0);
+    for (k, pair) in excess.windows(2).enumerate() {
+        let (a, b) = (pair[0], pair[1]);
+        wet += step * share_above_zero(a, b);
+        if a > 0.0 && b <= 0.0 {
+            level = step * (k as f64 + a / (a - b));
         }
-        [level, wet]
     }
+    [level, wet]
+}
 
-    fn near(&self, cloud: &FlowCloud) -> Vec<NearLine> {
-        let support = cloud.kernel.support;
-        let of = |(row, record): (usize, &crate::formulations::fluid::FlowParticle)| {
-            let offset = cloud.offset(self.at, record.position());
-            let height = offset.dot(self.up);
-            let aside = (offset - self.up * height).length_squared();
-            let within = aside < support * support && height > -support && record.volume() > 0.0;
-            within.then_some(NearLine { height, aside, volume: record.volume(), fluid: row < cloud.fluid })
-        };
-        cloud.records().iter().enumerate().filter_map(of).collect()
-    }
+fn near_line(cloud: &FlowCloud, at: DVec3, up: DVec3) -> Vec<NearLine> {
+    let support = cloud.kernel.support;
+    let of = |(row, record): (usize, &crate::formulations::fluid::FlowParticle)| {
+        let offset = cloud.offset(at, record.position());
+        let height = offset.dot(up);
+        let aside = (offset - up * height).length_squared();
+        let within = aside < support * support && height > -support && record.volume() > 0.0;
+        within.then_some(NearLine { height, aside, volume: record.volume(), fluid: row < cloud.fluid })
+    };
+    cloud.records().iter().enumerate().filter_map(of).collect()
 }
 
 /// Above zero where the line is wet at that height.

@@ -1,5 +1,6 @@
 //! Probes of flows: the readings of gauges and sensors of an experiment.
 
+mod carrier;
 mod flux;
 mod level;
 mod reaction;
@@ -7,6 +8,7 @@ mod resolve;
 mod sensor;
 #[cfg(test)]
 mod tests;
+mod watch;
 
 pub use level::water_level;
 pub(super) use resolve::resolve;

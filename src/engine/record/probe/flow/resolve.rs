@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::carrier::Carrier;
 use super::flux::FluxGauge;
 use super::level::LevelGauge;
 use super::reaction::ReactionGauge;
@@ -32,7 +33,7 @@ pub fn resolve(
                     problem("", "without gravity there is no direction up", "give the direction as `along`")
                 })?,
             };
-            Box::new(LevelGauge { at, up })
+            Box::new(LevelGauge { at, up, carrier: carrier(k, probe, at, sim)?, turns: along.is_some() })
         }
         Quantity::PressureSensor { diameter, normal } => {
             let normal = unit(*normal, "normal")?;
@@ -44,7 +45,8 @@ pub fn resolve(
                 ));
             }
             let plane = sim.dimension() == Dimension::Two;
-            Box::new(SensorGauge::new(at, *diameter, normal, sim.gravity(), plane))
+            let sensor = SensorGauge::new(at, *diameter, normal, sim.gravity(), plane);
+            Box::new(sensor.following(carrier(k, probe, at, sim)?))
         }
         Quantity::Flux { normal, within } => {
             let normal = unit(*normal, "normal")?;
@@ -68,4 +70,30 @@ pub fn resolve(
         return Err(problem("", "there is no fluid to measure", "add a body with `formulation: Fluid`"));
     }
     Ok(Some(gauge))
+}
+
+/// What carries a gauge along; none if it stays where it is.
+fn carrier(
+    k: usize,
+    probe: &scene::Probe,
+    at: DVec3,
+    sim: &SimBuilder<'_>,
+) -> Result<Option<Carrier>, Vec<Problem>> {
+    let Some(name) = &probe.follows else { return Ok(None) };
+    let Some(body) = sim.bodies().iter().find(|body| body.name == *name) else {
+        // Reported by the checks of the scene.
+        return Err(Vec::new());
+    };
+    let problem = |message: String, help: &str| {
+        vec![Problem::at_path(format!("probes[{k}].follows"), message).help(help)]
+    };
+    if body.kind == BodyKind::Fluid {
+        return Err(problem(
+            format!("body `{name}` is a fluid, whose points mix"),
+            "name a wall or a body, or leave `follows` out to measure at a point of space",
+        ));
+    }
+    let carrier = Carrier::of(body, at, sim.dimension().count());
+    let help = "a body that carries a gauge needs particles in all directions from each other";
+    carrier.map(Some).ok_or_else(|| problem(format!("body `{name}` has too few particles to turn"), help))
 }

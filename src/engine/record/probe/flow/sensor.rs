@@ -6,31 +6,36 @@
 //! (2012) 7057-7075, eq. 27; W stands for the kernel times the volume). A fluid at rest fills the space that
 //! walls leave in front of the point, `1/2 - sum_w W`. In a jet or a splash, where less than four fifths of
 //! it is filled, the dry part of the face has no pressure.
+//!
+//! A sensor that moves along subtracts the acceleration a_w of its wall from g. The pressure of the nearest
+//! particle of the wall contains it, `p_w = (sum_f p_f W - sum_f (g + b_f - a_w) . rho_f x_f W) / sum_f W`
+//! with x_f from that particle, and gives its part along the normal.
 
 use glam::DVec3;
 
+use super::carrier::{Carried, Carrier};
+use super::watch::WallWatch;
 use crate::formulations::fluid::{BoundarySurface, FlowCloud, FlowParticle, Role};
 use crate::record::probe::measure::Measure;
 use crate::schedule::Resources;
-use crate::world::{Column, MissingColumn, Position, World};
+use crate::world::{BodyId, MissingColumn, World};
 
 /// Part of the place in front of a point that a fluid without gaps fills at least.
 const FILLED: f64 = 0.8;
 /// Minimum part of the place in front of a point for which there is a pressure.
 const MIN_FILLING: f64 = 1e-6;
 
-/// A face in a wall.
-pub struct SensorGauge {
-    /// Points of the face, each for an equal part of it.
-    pub(super) points: Vec<DVec3>,
-    /// Unit vector out of the face, into the fluid.
-    pub(super) normal: DVec3,
-    pub(super) gravity: DVec3,
+/// The face of a sensor.
+struct Face {
+    /// Its points, each for an equal part of it.
+    points: Vec<DVec3>,
+    /// Unit vector out of it, into the fluid.
+    normal: DVec3,
 }
 
-impl SensorGauge {
+impl Face {
     /// A face about `at`: points on a line in two dimensions, on rings of equal area in three.
-    pub(super) fn new(at: DVec3, diameter: f64, normal: DVec3, gravity: DVec3, plane: bool) -> Self {
+    fn new(at: DVec3, diameter: f64, normal: DVec3, plane: bool) -> Self {
         let points = if diameter == 0.0 {
             vec![at]
         } else if plane {
@@ -45,33 +50,60 @@ impl SensorGauge {
             };
             (0..3).flat_map(|k| (0..8).map(move |m| (k, m))).map(on).collect()
         };
-        Self { points, normal, gravity }
+        Self { points, normal }
+    }
+
+    /// The face about `at` as a body has carried it along.
+    fn carried(&self, at: DVec3, by: &Carried) -> Self {
+        let points = self.points.iter().map(|point| by.point(point - at)).collect();
+        Self { points, normal: by.normal(self.normal) }
+    }
+}
+
+/// A pressure sensor.
+pub struct SensorGauge {
+    at: DVec3,
+    face: Face,
+    gravity: DVec3,
+    /// What carries it along; without it the sensor stays where it is.
+    carrier: Option<Carrier>,
+    watch: WallWatch,
+}
+
+/// What a sensor is read with: the cloud, and its rows of fluids and of walls near the face.
+struct NearFace<'a> {
+    cloud: &'a FlowCloud,
+    face: &'a Face,
+    fluid: Vec<usize>,
+    walls: Vec<usize>,
+    /// That of the wall, m/s2.
+    acceleration: DVec3,
+}
+
+impl SensorGauge {
+    /// A sensor that stays where it is.
+    pub(super) fn new(at: DVec3, diameter: f64, normal: DVec3, gravity: DVec3, plane: bool) -> Self {
+        let face = Face::new(at, diameter, normal, plane);
+        Self { at, face, gravity, carrier: None, watch: WallWatch::default() }
+    }
+
+    /// The same, carried along.
+    pub(super) fn following(self, carrier: Option<Carrier>) -> Self {
+        Self { carrier, ..self }
     }
 
     /// Mean over the points of the face, Pa.
-    fn pressure(&self, cloud: &FlowCloud) -> f64 {
-        let reach = cloud.kernel.support;
-        let near = |i: &usize| {
-            let record = &cloud.records()[*i];
-            let is_near =
-                |point: &DVec3| cloud.offset(*point, record.position()).length_squared() < reach * reach;
-            record.volume() > 0.0 && self.points.iter().any(is_near)
-        };
-        let fluid: Vec<usize> = (0..cloud.fluid).filter(near).collect();
-        // A thin body is there twice.
-        let once = cloud.groups.iter().enumerate().filter(|(k, group)| {
-            group.fluid().is_none() && cloud.groups[..*k].last().is_none_or(|last| last.body != group.body)
-        });
-        let walls: Vec<usize> = once.flat_map(|(_, group)| group.cloud.clone()).filter(near).collect();
-        let sum: f64 = self.points.iter().map(|&point| self.at(cloud, [&fluid, &walls], point)).sum();
-        sum / self.points.len() as f64
+    fn pressure(&self, near: &NearFace<'_>) -> f64 {
+        let points = &near.face.points;
+        points.iter().map(|&point| self.at(near, point)).sum::<f64>() / points.len() as f64
     }
 
-    fn at(&self, cloud: &FlowCloud, [fluid, walls]: [&[usize]; 2], point: DVec3) -> f64 {
+    fn at(&self, near: &NearFace<'_>, point: DVec3) -> f64 {
+        let NearFace { cloud, face, fluid, walls, acceleration } = near;
         let share = |i: &usize| {
             let record = &cloud.records()[*i];
             let x = cloud.offset(point, record.position());
-            let is_in_front = x.dot(self.normal) > 0.0;
+            let is_in_front = x.dot(face.normal) > 0.0;
             if is_in_front { record.volume() * cloud.kernel.value(x.length()) } else { 0.0 }
         };
         let left = 0.5 - walls.iter().map(share).sum::<f64>();
@@ -79,11 +111,12 @@ impl SensorGauge {
         for &i in fluid {
             let record = &cloud.records()[i];
             let x = cloud.offset(point, record.position());
-            if x.dot(self.normal) > 0.0 {
+            if x.dot(face.normal) > 0.0 {
                 let weight = record.volume() * cloud.kernel.value(x.length());
                 total += weight;
                 sum += weight * record.pressure();
-                sum -= weight * self.density(cloud, record) * (self.gravity + cloud.load(i)).dot(x);
+                let field = self.gravity + cloud.load(i) - acceleration;
+                sum -= weight * density(cloud, record) * field.dot(x);
             }
         }
         let place = total.max(FILLED * left);
@@ -93,23 +126,72 @@ impl SensorGauge {
         if suction { pressure } else { pressure.max(0.0) }
     }
 
-    fn density(&self, cloud: &FlowCloud, record: &FlowParticle) -> f64 {
-        let state = cloud.groups.iter().find_map(|group| group.fluid());
-        state.map_or(0.0, |state| state.density + record.pressure() / state.sound_speed.powi(2))
+    /// Acceleration of the wall around the face along its normal; zero where the wall has no pressure.
+    fn acceleration(&self, near: &NearFace<'_>) -> DVec3 {
+        let NearFace { cloud, face, walls, .. } = near;
+        let middle = face.points.iter().sum::<DVec3>() / face.points.len() as f64;
+        let Some(wall) = nearest(cloud, walls, middle) else { return DVec3::ZERO };
+        let wall = &cloud.records()[wall];
+        let (mut total, mut pressure, mut moment) = (0.0, 0.0, 0.0);
+        for i in 0..cloud.fluid {
+            let record = &cloud.records()[i];
+            let x = cloud.offset(wall.position(), record.position());
+            let weight = record.volume() * cloud.kernel.value(x.length());
+            if weight > 0.0 {
+                let mass = density(cloud, record) * x;
+                total += weight;
+                pressure += weight * (record.pressure() - (self.gravity + cloud.load(i)).dot(mass));
+                moment += weight * mass.dot(face.normal);
+            }
+        }
+        if wall.pressure() == 0.0 || total < MIN_FILLING || moment <= 0.0 {
+            return DVec3::ZERO;
+        }
+        face.normal * ((wall.pressure() * total - pressure) / moment)
     }
+}
+
+fn density(cloud: &FlowCloud, record: &FlowParticle) -> f64 {
+    let state = cloud.groups.iter().find_map(|group| group.fluid());
+    state.map_or(0.0, |state| state.density + record.pressure() / state.sound_speed.powi(2))
+}
+
+impl<'a> NearFace<'a> {
+    fn new(cloud: &'a FlowCloud, face: &'a Face) -> Self {
+        let reach = cloud.kernel.support;
+        let near = |i: &usize| {
+            let record = &cloud.records()[*i];
+            let is_near =
+                |point: &DVec3| cloud.offset(*point, record.position()).length_squared() < reach * reach;
+            record.volume() > 0.0 && face.points.iter().any(is_near)
+        };
+        let fluid = (0..cloud.fluid).filter(near).collect();
+        // A thin body is there twice.
+        let once = cloud.groups.iter().enumerate().filter(|(k, group)| {
+            group.fluid().is_none() && cloud.groups[..*k].last().is_none_or(|last| last.body != group.body)
+        });
+        let walls = once.flat_map(|(_, group)| group.cloud.clone()).filter(near).collect();
+        Self { cloud, face, fluid, walls, acceleration: DVec3::ZERO }
+    }
+}
+
+/// The boundary particle that is nearest to a point.
+pub(super) fn nearest(cloud: &FlowCloud, walls: &[usize], point: DVec3) -> Option<usize> {
+    let distance = |i: &usize| cloud.offset(point, cloud.records()[*i].position()).length_squared();
+    walls.iter().copied().min_by(|a, b| distance(a).total_cmp(&distance(b)))
 }
 
 /// The surface of the boundary particle that is nearest to a point.
 fn nearest_surface(cloud: &FlowCloud, walls: &[usize], point: DVec3) -> Option<BoundarySurface> {
-    let distance = |i: &usize| cloud.offset(point, cloud.records()[*i].position()).length_squared();
-    let nearest = *walls.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+    let nearest = nearest(cloud, walls, point)?;
     let group = cloud.groups.iter().find(|group| group.cloud.contains(&nearest))?;
     if let Role::Boundary(surface) = group.role { Some(surface) } else { None }
 }
 
 /// The pressure that a small sensor at a point shows, Pa; `normal` is the unit vector out of its face.
 pub fn pressure_on_face(cloud: &FlowCloud, at: DVec3, normal: DVec3, gravity: DVec3) -> f64 {
-    SensorGauge::new(at, 0.0, normal, gravity, true).pressure(cloud)
+    let sensor = SensorGauge::new(at, 0.0, normal, gravity, true);
+    sensor.pressure(&NearFace::new(cloud, &sensor.face))
 }
 
 impl Measure for SensorGauge {
@@ -122,11 +204,24 @@ impl Measure for SensorGauge {
     }
 
     fn needs(&self) -> Vec<&'static str> {
-        vec![Position::NAME]
+        Carrier::NEEDS.to_vec()
     }
 
-    fn read(&self, _: &World, resources: &Resources) -> Result<Vec<f64>, MissingColumn> {
+    fn left_by(&self) -> Option<BodyId> {
+        self.watch.left()
+    }
+
+    fn read(&self, world: &World, resources: &Resources) -> Result<Vec<f64>, MissingColumn> {
         let Some(cloud) = FlowCloud::whole(resources) else { return Ok(vec![f64::NAN]) };
-        Ok(vec![self.pressure(&cloud)])
+        let Some(carrier) = &self.carrier else {
+            let near = NearFace::new(&cloud, &self.face);
+            self.watch.look(&cloud, &near.walls, self.at, self.face.normal);
+            return Ok(vec![self.pressure(&near)]);
+        };
+        let Some(carried) = carrier.carried(world)? else { return Ok(vec![f64::NAN]) };
+        let face = self.face.carried(self.at, &carried);
+        let mut near = NearFace::new(&cloud, &face);
+        near.acceleration = self.acceleration(&near);
+        Ok(vec![self.pressure(&near)])
     }
 }

@@ -21,18 +21,24 @@ const TANK: &str = r#"(name: "tank", material: "wall", spacing: 0.025, formulati
 
 /// The first row of the series of the probe `p`, with the names of the columns, without time.
 fn first(text: &str) -> Vec<(String, f64)> {
+    measured(text).0
+}
+
+/// The first and the last row of the series of the probe `p`, and the warnings of the run.
+fn measured(text: &str) -> (Vec<(String, f64)>, Vec<f64>, Vec<String>) {
     let (scene, source) = parse(Source::new("test.ron", text.to_owned())).unwrap_or_else(|e| panic!("{e}"));
     let folder = tempfile::tempdir().unwrap();
     let options = BuildOptions::into_folder(folder.path());
     let mut sim =
         build_with(&scene, &source, &Registry::standard(), &options).unwrap_or_else(|e| panic!("{e}"));
     sim.run(|_| true).unwrap();
-    sim.finish().unwrap();
+    let warnings = sim.finish().unwrap().warnings;
     let csv = std::fs::read_to_string(folder.path().join("p.csv")).unwrap();
-    let (names, row) = csv.split_once('\n').unwrap();
+    let (names, rows) = csv.split_once('\n').unwrap();
     let names = names.split(',').map(|name| name.split('[').next().unwrap_or_default().to_owned());
-    let row = row.lines().next().unwrap().split(',').map(|value| value.parse().unwrap());
-    names.zip(row).skip(1).collect()
+    let numbers = |row: &str| row.split(',').map(|value| value.parse().unwrap()).collect::<Vec<f64>>();
+    let first = names.zip(numbers(rows.lines().next().unwrap())).skip(1).collect();
+    (first, numbers(rows.lines().last().unwrap())[1..].to_vec(), warnings)
 }
 
 fn at(quantity: &str, place: &str) -> String {
@@ -88,6 +94,63 @@ fn the_floor_bears_the_weight_and_each_side_half_of_its_square() {
     let torque = first(&scene(right, "FluidTorque(about: (1, 0))"));
     let height = -torque[0].1 / force[0].1;
     assert!((height - 0.5 / 3.0).abs() < 0.03, "{torque:?}");
+}
+
+#[test]
+fn the_torque_on_a_tank_is_about_the_centre_of_its_volume() {
+    let left = WATER.replace("(1, 0.5)", "(0.5, 0.5)");
+    let torque = first(&text(
+        &format!("{left}, {TANK}"),
+        r#""0", "0""#,
+        "(0, -9.81)",
+        &at("Torque", r#"on: Select(body: "tank")"#),
+    ));
+    // The weight acts at x = 0.25, the pressure on the left side at a third of the depth; the centre of the
+    // rectangle 1.2 by 0.9 without that of 1 by 0.8 is at x = 0.5.
+    let (outer, inner) = (1.2 * 0.9, 1.0 * 0.8);
+    let height = (outer * 0.35 - inner * 0.4) / (outer - inner);
+    let weight = 1000.0 * 9.81 * 0.25;
+    let push = 0.5 * 1000.0 * 9.81 * 0.25;
+    let wanted = weight * 0.25 + push * (0.5 / 3.0 - height);
+    assert!((torque[0].1 - wanted).abs() < 0.03 * wanted, "{torque:?} {wanted}");
+}
+
+/// A tank that glides away with its water by eight spacings.
+#[test]
+fn gauges_that_follow_a_tank_show_what_they_show_at_rest() {
+    let scene = |quantity: &str, place: &str| {
+        let tank = TANK.replace("Wall(),", "Wall(), velocity: (4, 0),");
+        let text = text(&format!("{WATER}, {tank}"), r#""4", "0""#, "(0, -9.81)", &at(quantity, place));
+        measured(&text.replace("(end: 0.001, step: Fixed(0.001))", "(end: 0.05, step: Fixed(0.0002))"))
+    };
+    let sensor = "PressureSensor(diameter: 0.05, normal: (-1, 0))";
+    let left =
+        |warnings: &[String]| warnings.iter().filter(|text| text.contains("has lain in `tank`")).count();
+    let (_, side, warnings) = scene(sensor, r#"at: (1, 0.2), follows: "tank""#);
+    assert!((side[0] - 2943.0).abs() < 30.0 && left(&warnings) == 0, "{side:?} {warnings:?}");
+    // In the middle, where the tank has no particle.
+    let (_, level, _) = scene("WaterLevel()", r#"at: (0.5, 0.2), follows: "tank""#);
+    assert!((level[0] - 0.3).abs() < 0.005, "{level:?}");
+    let (_, _, warnings) = scene(sensor, "at: (1, 0.2)");
+    assert_eq!(left(&warnings), 1, "{warnings:?}");
+    // The wall slides along itself below this one.
+    let (_, floor, warnings) = scene("PressureSensor(normal: (0, 1))", "at: (0.6, 0)");
+    assert!((floor[0] - 4905.0).abs() < 50.0 && left(&warnings) == 0, "{floor:?} {warnings:?}");
+}
+
+/// A tank that is lifted at half of gravity, and water that starts with the pressure of one and a half: the
+/// kernel at the floor reaches over particles half to two and a half spacings above it.
+#[test]
+fn a_sensor_that_follows_an_accelerated_floor_feels_its_acceleration() {
+    let water = WATER.replace("Fluid)", r#"Fluid(pressure: "1000*1.5*9.81*(0.5 - y)"))"#);
+    let lift = r#"conditions: [Displacement(on: Select(body: "tank"), value: (0, "0.25*9.81*t*t")), "#;
+    let sensor = at("PressureSensor(normal: (0, 1))", r#"at: (0.6, 0), follows: "tank""#);
+    let text = text(&format!("{water}, {TANK}"), r#""0", "0""#, "(0, -9.81)", &sensor)
+        .replace("conditions: [", lift)
+        .replace("(end: 0.001, step: Fixed(0.001))", "(end: 0.002, step: Fixed(0.0002))");
+    let (_, floor, _) = measured(&text);
+    let wanted = 1000.0 * 1.5 * 9.81 * 0.5;
+    assert!((floor[0] - wanted).abs() < 0.002 * wanted, "{floor:?} {wanted}");
 }
 
 #[test]
