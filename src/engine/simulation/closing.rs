@@ -116,7 +116,7 @@ impl Simulation {
         let of = |(name, body): (&str, BodyId)| {
             let body = &self.world.body(body).name;
             format!(
-                "probe `{name}` has lain in `{body}`, which has moved over it or away from it: its place is fixed in space, and what it shows is not the pressure on `{body}`; `follows: \"{body}\"` takes it along"
+                "probe `{name}` stays where it is in space, and `{body}` has moved over it or away from it: it no longer shows what a gauge at `{body}` would; `follows: \"{body}\"` takes it along"
             )
         };
         let texts: Vec<String> =

@@ -6,10 +6,11 @@
 use glam::DVec3;
 
 use super::carrier::Carrier;
+use super::watch::WallWatch;
 use crate::formulations::fluid::FlowCloud;
 use crate::record::probe::measure::Measure;
 use crate::schedule::Resources;
-use crate::world::{MissingColumn, World};
+use crate::world::{BodyId, MissingColumn, World};
 
 /// Steps along the line in a support radius.
 const STEPS: f64 = 12.0;
@@ -25,6 +26,7 @@ pub struct LevelGauge {
     pub(super) carrier: Option<Carrier>,
     /// Whether the line turns with what carries it: its direction is a stated one, and not up.
     pub(super) turns: bool,
+    pub(super) watch: WallWatch,
 }
 
 /// A particle near the line.
@@ -45,13 +47,21 @@ impl Measure for LevelGauge {
         Some(0.0)
     }
 
+    fn left_by(&self) -> Option<BodyId> {
+        self.watch.left()
+    }
+
     fn needs(&self) -> Vec<&'static str> {
         Carrier::NEEDS.to_vec()
     }
 
     fn read(&self, world: &World, resources: &Resources) -> Result<Vec<f64>, MissingColumn> {
         let Some(cloud) = FlowCloud::whole(resources) else { return Ok(vec![f64::NAN; 2]) };
-        let Some(carrier) = &self.carrier else { return Ok(water_levels(&cloud, self.at, self.up).to_vec()) };
+        let Some(carrier) = &self.carrier else {
+            let heights = water_levels(&cloud, self.at, self.up);
+            self.watch.look_at_foot(&cloud, self.at, heights[1] > 0.0);
+            return Ok(heights.to_vec());
+        };
         let Some(carried) = carrier.carried(world)? else { return Ok(vec![f64::NAN; 2]) };
         let up = if self.turns { carried.along(self.up) } else { self.up };
         Ok(water_levels(&cloud, carried.place, up).to_vec())

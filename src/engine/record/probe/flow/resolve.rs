@@ -7,6 +7,7 @@ use super::flux::FluxGauge;
 use super::level::LevelGauge;
 use super::reaction::ReactionGauge;
 use super::sensor::SensorGauge;
+use super::watch::WallWatch;
 use crate::plugin::{BodyKind, Selection, SimBuilder};
 use crate::record::probe::direction::direction;
 use crate::record::probe::measure::Measure;
@@ -33,7 +34,13 @@ pub fn resolve(
                     problem("", "without gravity there is no direction up", "give the direction as `along`")
                 })?,
             };
-            Box::new(LevelGauge { at, up, carrier: carrier(k, probe, at, sim)?, turns: along.is_some() })
+            Box::new(LevelGauge {
+                at,
+                up,
+                carrier: carrier(k, probe, at, sim)?,
+                turns: along.is_some(),
+                watch: WallWatch::default(),
+            })
         }
         Quantity::PressureSensor { diameter, normal } => {
             let normal = unit(*normal, "normal")?;

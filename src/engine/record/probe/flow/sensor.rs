@@ -15,7 +15,7 @@ use glam::DVec3;
 
 use super::carrier::{Carried, Carrier};
 use super::watch::WallWatch;
-use crate::formulations::fluid::{BoundarySurface, FlowCloud, FlowParticle, Role};
+use crate::formulations::fluid::{BoundarySurface, FlowCloud, Role};
 use crate::record::probe::measure::Measure;
 use crate::schedule::Resources;
 use crate::world::{BodyId, MissingColumn, World};
@@ -116,7 +116,7 @@ impl SensorGauge {
                 total += weight;
                 sum += weight * record.pressure();
                 let field = self.gravity + cloud.load(i) - acceleration;
-                sum -= weight * density(cloud, record) * field.dot(x);
+                sum -= weight * density(cloud, i) * field.dot(x);
             }
         }
         let place = total.max(FILLED * left);
@@ -138,7 +138,7 @@ impl SensorGauge {
             let x = cloud.offset(wall.position(), record.position());
             let weight = record.volume() * cloud.kernel.value(x.length());
             if weight > 0.0 {
-                let mass = density(cloud, record) * x;
+                let mass = density(cloud, i) * x;
                 total += weight;
                 pressure += weight * (record.pressure() - (self.gravity + cloud.load(i)).dot(mass));
                 moment += weight * mass.dot(face.normal);
@@ -151,9 +151,11 @@ impl SensorGauge {
     }
 }
 
-fn density(cloud: &FlowCloud, record: &FlowParticle) -> f64 {
-    let state = cloud.groups.iter().find_map(|group| group.fluid());
-    state.map_or(0.0, |state| state.density + record.pressure() / state.sound_speed.powi(2))
+/// Density of a particle of a fluid, kg/m3.
+fn density(cloud: &FlowCloud, i: usize) -> f64 {
+    let group = cloud.groups.iter().find(|group| group.cloud.contains(&i));
+    let state = group.and_then(|group| group.fluid());
+    state.map_or(0.0, |state| state.density + cloud.records()[i].pressure() / state.sound_speed.powi(2))
 }
 
 impl<'a> NearFace<'a> {

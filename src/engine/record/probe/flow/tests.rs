@@ -8,7 +8,7 @@ use crate::world::{BodyId, Mass, Velocity};
 fn text(bodies: &str, velocity: &str, gravity: &str, probes: &str) -> String {
     format!(
         r#"(dimension: Two, gravity: {gravity}, domain: (min: (-1, -1), max: (3, 3)),
-            materials: {{"water": Fluid(density: 1000.0, sound_speed: 40.0, viscosity: 1.0), "rubber": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)}},
+            materials: {{"water": Fluid(density: 1000.0, sound_speed: 40.0, viscosity: 1.0), "light": Fluid(density: 100.0, sound_speed: 40.0), "rubber": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)}},
             bodies: [{bodies}],
             conditions: [InitialVelocity(on: Select(body: "water"), value: ({velocity}))],
             probes: [{probes}], time: (end: 0.001, step: Fixed(0.001)))"#
@@ -124,8 +124,7 @@ fn gauges_that_follow_a_tank_show_what_they_show_at_rest() {
         measured(&text.replace("(end: 0.001, step: Fixed(0.001))", "(end: 0.05, step: Fixed(0.0002))"))
     };
     let sensor = "PressureSensor(diameter: 0.05, normal: (-1, 0))";
-    let left =
-        |warnings: &[String]| warnings.iter().filter(|text| text.contains("has lain in `tank`")).count();
+    let left = |warnings: &[String]| warnings.iter().filter(|text| text.contains("`tank` has moved")).count();
     let (_, side, warnings) = scene(sensor, r#"at: (1, 0.2), follows: "tank""#);
     assert!((side[0] - 2943.0).abs() < 30.0 && left(&warnings) == 0, "{side:?} {warnings:?}");
     // In the middle, where the tank has no particle.
@@ -133,6 +132,9 @@ fn gauges_that_follow_a_tank_show_what_they_show_at_rest() {
     assert!((level[0] - 0.3).abs() < 0.005, "{level:?}");
     let (_, _, warnings) = scene(sensor, "at: (1, 0.2)");
     assert_eq!(left(&warnings), 1, "{warnings:?}");
+    // The wall on the left comes over this one.
+    let (_, dry, warnings) = scene("WaterLevel()", "at: (0.15, 0.2)");
+    assert!(dry[0] == 0.0 && left(&warnings) == 1, "{dry:?} {warnings:?}");
     // The wall slides along itself below this one.
     let (_, floor, warnings) = scene("PressureSensor(normal: (0, 1))", "at: (0.6, 0)");
     assert!((floor[0] - 4905.0).abs() < 50.0 && left(&warnings) == 0, "{floor:?} {warnings:?}");
@@ -151,6 +153,20 @@ fn a_sensor_that_follows_an_accelerated_floor_feels_its_acceleration() {
     let (_, floor, _) = measured(&text);
     let wanted = 1000.0 * 1.5 * 9.81 * 0.5;
     assert!((floor[0] - wanted).abs() < 0.002 * wanted, "{floor:?} {wanted}");
+}
+
+/// Half a metre of two liquids: what a sensor adds to the pressure of the particles in front of it is the
+/// weight of their own liquid, whichever the scene names first.
+#[test]
+fn a_sensor_below_two_liquids_shows_the_weight_of_both() {
+    let water = WATER.replace("(1, 0.5)", "(1, 0.25)");
+    let light = WATER.replace("(0, 0)", "(0, 0.25)").replace(r#""water""#, r#""light""#);
+    for liquids in [format!("{light}, {water}"), format!("{water}, {light}")] {
+        let sensor = at("PressureSensor(diameter: 0.1, normal: (0, 1))", "at: (0.5, 0)");
+        let bodies = format!("{liquids}, {TANK}");
+        let found = first(&text(&bodies, r#""0", "0""#, "(0, -9.81)", &sensor));
+        near(&found, &[("pressure", 9.81 * (1000.0 + 100.0) * 0.25)], 15.0);
+    }
 }
 
 #[test]
