@@ -113,8 +113,9 @@ pub enum Quantity {
     /// part of a wall it is 6 and 3 % off in water 10 and 20 particles deep, as flows act below the surface
     /// and the tension that this makes along the wall counts where the part ends: use `FluidForce` there.
     Force,
-    /// Torque of the same forces about the centre of mass of the selection, of walls, which have no mass, about
-    /// that of their volume \[N m\]. A half-space has none: use `Moment`. On a part of a wall use `FluidTorque`.
+    /// Torque of the same forces about the centre of mass of the selection, of walls, which have no mass,
+    /// about that of their volume \[N m\]. A half-space has none: use `Moment`. On a part of a wall use
+    /// `FluidTorque`.
     Torque,
     /// Moment of the same forces about a fixed point \[N m\]. On a part of a wall use `FluidTorque`.
     Moment {

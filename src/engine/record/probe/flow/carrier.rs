@@ -16,7 +16,7 @@ const REACH: f64 = 3.0;
 const APART: f64 = 1.5;
 
 /// The particles that carry a gauge.
-pub struct Carrier {
+pub struct GaugeCarrier {
     body: BodyId,
     axes: usize,
     /// Numbers in the body, and places in the reference configuration from the gauge, m.
@@ -24,13 +24,13 @@ pub struct Carrier {
 }
 
 /// Where a gauge is now.
-pub struct Carried {
+pub struct GaugeFrame {
     pub place: DVec3,
     /// A.
     gradient: DMat3,
 }
 
-impl Carrier {
+impl GaugeCarrier {
     /// That of a gauge at a point; none if the particles of the body do not span the space.
     pub fn of(body: &BodyPlan, at: DVec3, axes: usize) -> Option<Self> {
         let offsets = body.sites.iter().map(|site| site.position - at);
@@ -55,7 +55,7 @@ impl Carrier {
     ///
     /// # Errors
     /// A column is missing.
-    pub fn carried(&self, world: &World) -> Result<Option<Carried>, MissingColumn> {
+    pub fn carried(&self, world: &World) -> Result<Option<GaugeFrame>, MissingColumn> {
         let (view, rows) = world.body_view(self.body);
         let (position, removed) = (view.read::<Position>()?, view.read::<Removed>()?);
         let (position, removed) = (&position[rows.clone()], &removed[rows]);
@@ -64,7 +64,7 @@ impl Carrier {
     }
 }
 
-impl Carried {
+impl GaugeFrame {
     /// The unit vector along a direction of the reference configuration.
     pub fn along(&self, direction: DVec3) -> DVec3 {
         (self.gradient * direction).normalize_or(direction)
@@ -82,7 +82,7 @@ impl Carried {
 }
 
 /// The map that fits pairs of offsets from the gauge in the reference configuration and places best.
-fn affine(axes: usize, pairs: impl Iterator<Item = (DVec3, DVec3)> + Clone) -> Option<Carried> {
+fn affine(axes: usize, pairs: impl Iterator<Item = (DVec3, DVec3)> + Clone) -> Option<GaugeFrame> {
     let count = pairs.clone().count() as f64;
     let sum = pairs.clone().fold([DVec3::ZERO; 2], |sum, pair| [sum[0] + pair.0, sum[1] + pair.1]);
     let [reference, now] = [sum[0] / count, sum[1] / count];
@@ -97,7 +97,7 @@ fn affine(axes: usize, pairs: impl Iterator<Item = (DVec3, DVec3)> + Clone) -> O
     if axes == 2 {
         gradient.z_axis = DVec3::Z;
     }
-    Some(Carried { place: now - gradient * reference, gradient })
+    Some(GaugeFrame { place: now - gradient * reference, gradient })
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use super::carrier::Carrier;
+use super::carrier::GaugeCarrier;
 use super::watch::WallWatch;
 use crate::formulations::fluid::FlowCloud;
 use crate::record::probe::measure::Measure;
@@ -19,14 +19,26 @@ const MIN_FILLING: f64 = 0.1;
 
 /// A line up from a point.
 pub struct LevelGauge {
-    pub(super) at: DVec3,
+    at: DVec3,
     /// Unit vector along the line.
-    pub(super) up: DVec3,
+    up: DVec3,
     /// What carries it along; without it the line stays where it is.
-    pub(super) carrier: Option<Carrier>,
+    carrier: Option<GaugeCarrier>,
     /// Whether the line turns with what carries it: its direction is a stated one, and not up.
-    pub(super) turns: bool,
-    pub(super) watch: WallWatch,
+    turns: bool,
+    watch: WallWatch,
+}
+
+impl LevelGauge {
+    /// A line that stays where it is.
+    pub(super) fn new(at: DVec3, up: DVec3, turns: bool) -> Self {
+        Self { at, up, carrier: None, turns, watch: WallWatch::default() }
+    }
+
+    /// The same, carried along.
+    pub(super) fn following(self, carrier: Option<GaugeCarrier>) -> Self {
+        Self { carrier, ..self }
+    }
 }
 
 /// A particle near the line.
@@ -52,7 +64,7 @@ impl Measure for LevelGauge {
     }
 
     fn needs(&self) -> Vec<&'static str> {
-        Carrier::NEEDS.to_vec()
+        GaugeCarrier::NEEDS.to_vec()
     }
 
     fn read(&self, world: &World, resources: &Resources) -> Result<Vec<f64>, MissingColumn> {

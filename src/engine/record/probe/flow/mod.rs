@@ -3,6 +3,7 @@
 mod carrier;
 mod flux;
 mod level;
+mod nearest;
 mod reaction;
 mod resolve;
 mod sensor;

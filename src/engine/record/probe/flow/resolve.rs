@@ -2,12 +2,11 @@
 
 use glam::DVec3;
 
-use super::carrier::Carrier;
+use super::carrier::GaugeCarrier;
 use super::flux::FluxGauge;
 use super::level::LevelGauge;
 use super::reaction::ReactionGauge;
 use super::sensor::SensorGauge;
-use super::watch::WallWatch;
 use crate::plugin::{BodyKind, Selection, SimBuilder};
 use crate::record::probe::direction::direction;
 use crate::record::probe::measure::Measure;
@@ -34,13 +33,7 @@ pub fn resolve(
                     problem("", "without gravity there is no direction up", "give the direction as `along`")
                 })?,
             };
-            Box::new(LevelGauge {
-                at,
-                up,
-                carrier: carrier(k, probe, at, sim)?,
-                turns: along.is_some(),
-                watch: WallWatch::default(),
-            })
+            Box::new(LevelGauge::new(at, up, along.is_some()).following(carrier(k, probe, at, sim)?))
         }
         Quantity::PressureSensor { diameter, normal } => {
             let normal = unit(*normal, "normal")?;
@@ -85,7 +78,7 @@ fn carrier(
     probe: &scene::Probe,
     at: DVec3,
     sim: &SimBuilder<'_>,
-) -> Result<Option<Carrier>, Vec<Problem>> {
+) -> Result<Option<GaugeCarrier>, Vec<Problem>> {
     let Some(name) = &probe.follows else { return Ok(None) };
     let Some(body) = sim.bodies().iter().find(|body| body.name == *name) else {
         // Reported by the checks of the scene.
@@ -100,7 +93,7 @@ fn carrier(
             "name a wall or a body, or leave `follows` out to measure at a point of space",
         ));
     }
-    let carrier = Carrier::of(body, at, sim.dimension().count());
+    let carrier = GaugeCarrier::of(body, at, sim.dimension().count());
     let help = "a body that carries a gauge needs particles in all directions from each other";
     carrier.map(Some).ok_or_else(|| problem(format!("body `{name}` has too few particles to turn"), help))
 }

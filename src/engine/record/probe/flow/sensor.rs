@@ -13,7 +13,8 @@
 
 use glam::DVec3;
 
-use super::carrier::{Carried, Carrier};
+use super::carrier::{GaugeCarrier, GaugeFrame};
+use super::nearest::nearest;
 use super::watch::WallWatch;
 use crate::formulations::fluid::{BoundarySurface, FlowCloud, Role};
 use crate::record::probe::measure::Measure;
@@ -26,14 +27,14 @@ const FILLED: f64 = 0.8;
 const MIN_FILLING: f64 = 1e-6;
 
 /// The face of a sensor.
-struct Face {
+struct SensorFace {
     /// Its points, each for an equal part of it.
     points: Vec<DVec3>,
     /// Unit vector out of it, into the fluid.
     normal: DVec3,
 }
 
-impl Face {
+impl SensorFace {
     /// A face about `at`: points on a line in two dimensions, on rings of equal area in three.
     fn new(at: DVec3, diameter: f64, normal: DVec3, plane: bool) -> Self {
         let points = if diameter == 0.0 {
@@ -54,7 +55,7 @@ impl Face {
     }
 
     /// The face about `at` as a body has carried it along.
-    fn carried(&self, at: DVec3, by: &Carried) -> Self {
+    fn carried(&self, at: DVec3, by: &GaugeFrame) -> Self {
         let points = self.points.iter().map(|point| by.point(point - at)).collect();
         Self { points, normal: by.normal(self.normal) }
     }
@@ -63,17 +64,17 @@ impl Face {
 /// A pressure sensor.
 pub struct SensorGauge {
     at: DVec3,
-    face: Face,
+    face: SensorFace,
     gravity: DVec3,
     /// What carries it along; without it the sensor stays where it is.
-    carrier: Option<Carrier>,
+    carrier: Option<GaugeCarrier>,
     watch: WallWatch,
 }
 
 /// What a sensor is read with: the cloud, and its rows of fluids and of walls near the face.
 struct NearFace<'a> {
     cloud: &'a FlowCloud,
-    face: &'a Face,
+    face: &'a SensorFace,
     fluid: Vec<usize>,
     walls: Vec<usize>,
     /// That of the wall, m/s2.
@@ -83,12 +84,12 @@ struct NearFace<'a> {
 impl SensorGauge {
     /// A sensor that stays where it is.
     pub(super) fn new(at: DVec3, diameter: f64, normal: DVec3, gravity: DVec3, plane: bool) -> Self {
-        let face = Face::new(at, diameter, normal, plane);
+        let face = SensorFace::new(at, diameter, normal, plane);
         Self { at, face, gravity, carrier: None, watch: WallWatch::default() }
     }
 
     /// The same, carried along.
-    pub(super) fn following(self, carrier: Option<Carrier>) -> Self {
+    pub(super) fn following(self, carrier: Option<GaugeCarrier>) -> Self {
         Self { carrier, ..self }
     }
 
@@ -159,7 +160,7 @@ fn density(cloud: &FlowCloud, i: usize) -> f64 {
 }
 
 impl<'a> NearFace<'a> {
-    fn new(cloud: &'a FlowCloud, face: &'a Face) -> Self {
+    fn new(cloud: &'a FlowCloud, face: &'a SensorFace) -> Self {
         let reach = cloud.kernel.support;
         let near = |i: &usize| {
             let record = &cloud.records()[*i];
@@ -175,12 +176,6 @@ impl<'a> NearFace<'a> {
         let walls = once.flat_map(|(_, group)| group.cloud.clone()).filter(near).collect();
         Self { cloud, face, fluid, walls, acceleration: DVec3::ZERO }
     }
-}
-
-/// The boundary particle that is nearest to a point.
-pub(super) fn nearest(cloud: &FlowCloud, walls: &[usize], point: DVec3) -> Option<usize> {
-    let distance = |i: &usize| cloud.offset(point, cloud.records()[*i].position()).length_squared();
-    walls.iter().copied().min_by(|a, b| distance(a).total_cmp(&distance(b)))
 }
 
 /// The surface of the boundary particle that is nearest to a point.
@@ -206,7 +201,7 @@ impl Measure for SensorGauge {
     }
 
     fn needs(&self) -> Vec<&'static str> {
-        Carrier::NEEDS.to_vec()
+        GaugeCarrier::NEEDS.to_vec()
     }
 
     fn left_by(&self) -> Option<BodyId> {

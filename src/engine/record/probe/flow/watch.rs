@@ -4,15 +4,15 @@
 //! the wall, or up to 3/8 of the kernel in the corner of a box, and behind it half of the kernel, or an
 //! eighth at an edge in space. Once the wall has moved over the sensor it fills the half in front, and once
 //! it has moved back there is none of it behind. Other bodies that come before a sensor leave its wall where
-//! it is. Above the foot of a gauge for the level nothing is wet any longer once a wall has come over it, which
-//! then fills its place.
+//! it is. Above the foot of a gauge for the level nothing is wet any longer once a wall has come over it,
+//! which then fills its place.
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::DVec3;
 
-use super::sensor::nearest;
+use super::nearest::nearest;
 use crate::formulations::fluid::FlowCloud;
 use crate::world::BodyId;
 
