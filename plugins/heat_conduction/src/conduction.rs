@@ -1,18 +1,10 @@
 //! Heat flux between pairs of particles, antisymmetric, so that heat is conserved.
 //!
-//! `m_i c dT_i/dt = sum_j 2 k V_i V_j w_ij g_ij (T_j - T_i)`, with present volumes and pair vectors. g_ij is
-//! 1 inside of an undeformed body, where `M = sum_j V_j w_ij x_ij (x) x_ij` is the identity. Otherwise the
-//! neighbourhood is treated as the affine image of an isotropic one, in d dimensions:
-//!
-//! `g_i = 1/2 [(d + 2) (x . M_i^-2 x) / (x . M_i^-1 x) - tr M_i^-1]`, `g_ij = max((g_i + g_j) / 2, 0)`,
-//!
-//! which is exact for quadratic temperatures in that case, and approximately compensates the truncated
-//! neighbourhoods along surfaces. Heat never flows from cold to hot.
+//! `m_i c dT_i/dt = sum_j 2 k V_i V_j w_ij g_ij (T_j - T_i)`, `g_ij = max((g_i + g_j) / 2, 0)`, with present
+//! volumes and pair vectors, and g_i from the [neighborhood](crate::neighborhood) of a particle. Heat never
+//! flows from cold to hot.
 
 use meshless_engine::bytemuck;
-use meshless_engine::correction::MomentMatrix;
-use meshless_engine::glam::DVec3;
-use meshless_engine::linalg::Sym3;
 use meshless_engine::parallel::{BlockSum, for_each_block};
 use meshless_engine::plugin::SimBuilder;
 use meshless_engine::schedule::{AccountKind, INTO_HEAT, Mode, Run, Stage, Step, StepError, System};
@@ -22,6 +14,7 @@ use meshless_engine::world::{
 };
 
 use crate::ConductedTemperature;
+use crate::neighborhood::Neighborhood;
 
 /// Conduction data of a body.
 #[derive(Clone, Copy)]
@@ -37,8 +30,6 @@ pub(crate) struct Conductor {
 
 /// Step over that at which the explicit update of temperatures becomes unstable.
 const SAFETY: f64 = 0.9;
-/// Minimum determinant of a moment matrix that shows a shape: below it the neighbourhood counts as round.
-const SINGULAR: f64 = 0.02;
 
 /// Adds the system that conducts at the end of each step of the bodies.
 pub(crate) fn add_system(sim: &mut SimBuilder<'_>, conductors: Vec<Conductor>) {
@@ -74,8 +65,8 @@ struct Conduction {
     conductors: Vec<Conductor>,
     axes: usize,
     volumes: PresentVolumes,
-    /// Inverse moment matrices of the rows of a body.
-    shapes: Vec<Sym3>,
+    /// Neighbourhoods of the rows of a body.
+    shapes: Vec<Neighborhood>,
     gains: Vec<Gain>,
     sums: Vec<Heat>,
 }
@@ -135,7 +126,7 @@ impl Conduction {
         let mut now = view.write::<Temperature>()?;
         let mut last = view.write::<ConductedTemperature>()?;
         let volumes = self.volumes.of_body(&view, &rows)?;
-        self.shapes.resize(rows.len(), Sym3::ZERO);
+        self.shapes.resize(rows.len(), Neighborhood::NONE);
         self.gains.resize(rows.len(), Gain::default());
         let pairs = PresentPairs { solid: &*solid, position: bytemuck::cast_slice(&position), volumes };
         let field = HeatField { pairs, first: rows.start, axes: self.axes };
@@ -182,33 +173,24 @@ struct HeatField<'a> {
 }
 
 impl HeatField<'_> {
-    /// The inverse of the moment matrix of the neighbourhood.
-    fn shape(&self, row: usize) -> Sym3 {
-        let mut moment = MomentMatrix::new(self.axes);
-        self.pairs.of(row, |pair| moment.add(pair.weight, pair.x_ij));
-        let mean = moment.matrix().trace() / self.axes as f64;
-        let round = || if mean > 0.0 { Sym3::IDENTITY * (1.0 / mean) } else { Sym3::ZERO };
-        moment.inverse_above(SINGULAR).unwrap_or_else(round)
-    }
-
-    /// g_i along a pair vector.
-    fn weight(&self, shape: &Sym3, x: DVec3) -> f64 {
-        let y = *shape * x;
-        let along = x.dot(y);
-        if along <= 0.0 {
-            return 0.0;
-        }
-        let axes = self.axes as f64;
-        let trace = if self.axes == 2 { shape.xx + shape.yy } else { shape.trace() };
-        0.5 * ((axes + 2.0) * y.length_squared() / along - trace)
+    fn shape(&self, row: usize) -> Neighborhood {
+        Neighborhood::new(self.axes, |take| self.pairs.of(row, |pair| take(pair.weight, pair.x_ij)))
     }
 
     /// Heat gain of a particle.
-    fn gain(&self, row: usize, shapes: &[Sym3], temperature: &[Temperature], conductivity: f64) -> Gain {
+    fn gain(
+        &self,
+        row: usize,
+        shapes: &[Neighborhood],
+        temperature: &[Temperature],
+        conductivity: f64,
+    ) -> Gain {
         let mut gain = Gain::default();
         let (own, volume) = (&shapes[row - self.first], self.pairs.volumes[row]);
-        self.pairs.of(row, |PresentPair { row: j, x_ij, weight, .. }| {
-            let shape = 0.5 * (self.weight(own, x_ij) + self.weight(&shapes[j - self.first], x_ij));
+        self.pairs.of(row, |PresentPair { row: j, signs, x_ij, weight }| {
+            // An image sees the pair mirrored.
+            let other = shapes[j - self.first].weight(self.axes, signs * x_ij);
+            let shape = 0.5 * (own.weight(self.axes, x_ij) + other);
             let share = 2.0 * conductivity * (volume * weight) * shape.max(0.0);
             gain.power += share * (temperature[j].0 - temperature[row].0);
             gain.rate += share;

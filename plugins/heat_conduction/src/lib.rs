@@ -1,6 +1,7 @@
 //! Conduction of heat in solids of every formulation, in the present configuration.
 
 mod conduction;
+mod neighborhood;
 mod start;
 
 use std::collections::BTreeMap;
