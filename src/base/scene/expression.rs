@@ -2,6 +2,7 @@
 
 mod compile;
 mod functions;
+mod range;
 
 use std::borrow::Cow;
 use std::fmt;
@@ -60,11 +61,11 @@ impl Expression {
                     stack[top] = variables[index];
                     top += 1;
                 }
-                Op::Unary(function) => stack[top - 1] = function(stack[top - 1]),
+                Op::Unary(function) => stack[top - 1] = (function.at)(stack[top - 1]),
                 Op::Table(index) => stack[top - 1] = self.program.tables[index].at(stack[top - 1]),
                 Op::Binary(function) => {
                     top -= 1;
-                    stack[top - 1] = function(stack[top - 1], stack[top]);
+                    stack[top - 1] = (function.at)(stack[top - 1], stack[top]);
                 }
             }
         }

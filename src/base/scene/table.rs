@@ -132,4 +132,10 @@ impl Interpolation {
             (None, None) => f64::NAN,
         }
     }
+
+    /// The values at the points between two places.
+    pub fn values_between(&self, from: f64, to: f64) -> impl Iterator<Item = f64> {
+        let first = self.points.partition_point(|point| point.0 <= from);
+        self.points[first..].iter().take_while(move |point| point.0 < to).map(|point| point.1)
+    }
 }

@@ -59,4 +59,8 @@ impl LoadLaw for ForcePerMass {
     fn is_constant(&self, part: &Part) -> bool {
         self.field.is_constant(part)
     }
+
+    fn functions(&self) -> Vec<Expression> {
+        self.field.functions().cloned().collect()
+    }
 }

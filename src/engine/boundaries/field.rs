@@ -67,6 +67,11 @@ impl VectorField {
         !(self.depends_on_time() || part.flows() && self.depends_on_place())
     }
 
+    /// The functions of its axes.
+    pub fn functions(&self) -> impl Iterator<Item = &Expression> {
+        self.components.iter().flatten()
+    }
+
     /// Whether the values differ from place to place.
     pub fn depends_on_place(&self) -> bool {
         self.components.iter().flatten().any(Expression::depends_on_place)

@@ -14,7 +14,8 @@ use super::on_rigid::push_beside;
 use super::part::{Part, parts_of, phases_of};
 use crate::parallel::{Picked, sum_over_blocks};
 use crate::plugin::{BodyKind, Selection, SetupError, SimBuilder};
-use crate::rigid::RIGID_BODIES;
+use crate::rigid::{MovingFunction, RIGID_BODIES};
+use crate::scene::Expression;
 use crate::schedule::{AccountKind, Mode, Run, Stage, Step, StepError, System};
 use crate::world::{BodyId, Force, ParticleId, Position, Removed, Velocity};
 
@@ -44,6 +45,10 @@ impl LoadLaw for DeadLoad {
         self.field.is_constant(part)
     }
 
+    fn functions(&self) -> Vec<Expression> {
+        self.field.functions().cloned().collect()
+    }
+
     fn arms(&self, k: usize) -> &[DVec3] {
         &self.arms[k]
     }
@@ -64,6 +69,10 @@ pub(super) fn apply(
     flow_load::add(label, &law, &parts, sim, &declare);
     let kinds: Vec<BodyKind> = parts.iter().map(|part| sim.body(part.body).kind).collect();
     let turns = kinds.contains(&BodyKind::Rigid);
+    let rigid = parts.iter().zip(&kinds).find(|(_, kind)| **kind == BodyKind::Rigid);
+    if let Some((body, place)) = rigid.and_then(|(part, _)| Some((part.body, *part.points.first()?))) {
+        law.functions().into_iter().for_each(|value| sim.extend(MovingFunction { body, value, place }));
+    }
     let load = Load { label, law, parts, kinds, forces, next: Vec::new() };
     let mut system = System::new(Stage::External, label, load).on_phases(phases).by_body();
     if turns {

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::part::Part;
+use crate::scene::Expression;
 use crate::schedule::{Step, StepError};
 
 /// The force of a load on every particle of a part.
@@ -12,6 +13,11 @@ pub(super) trait LoadLaw: Send + Sync + 'static {
 
     /// Whether the forces on a part are the same in every step.
     fn is_constant(&self, part: &Part) -> bool;
+
+    /// The functions of place and time that it follows.
+    fn functions(&self) -> Vec<Expression> {
+        Vec::new()
+    }
 
     /// From the particles of part `k` of a rigid body to where the forces act, in the reference
     /// configuration, m; none where they act on the particles.

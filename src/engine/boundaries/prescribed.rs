@@ -13,7 +13,7 @@ use super::part::{Part, parts_of, phases_of};
 use super::rigid_part::{require_one_motion, split_rigid};
 use crate::parallel::{Picked, sum_over_blocks};
 use crate::plugin::{BodyKind, MotionOfPlace, Prescription, Selection, SetupError, SimBuilder};
-use crate::rigid::{Drive, DrivenBody};
+use crate::rigid::{Drive, DrivenBody, MovingFunction};
 use crate::schedule::{AccountKind, Clock, Mode, Run, Stage, Step, StepError, System};
 use crate::world::{Column, Mass, Position, Removed, Velocity};
 
@@ -50,6 +50,8 @@ pub(super) fn prescribe(
         require_one_motion(name, &field, body, sim)?;
         let motion = PrescribedMotion { name, kind, field: field.clone(), parts: Vec::new(), time_increment };
         let stated = prescription(&motion);
+        let place = sim.body(body).sites.first().map_or(DVec3::ZERO, |site| site.position);
+        field.functions().for_each(|value| sim.extend(MovingFunction { body, value: value.clone(), place }));
         sim.extend(DrivenBody { body, motion: stated, axes: field.axes(), drive: Box::new(motion) });
     }
     if selection.is_empty() {

@@ -7,7 +7,7 @@ use serde::Deserialize;
 use super::rigid_part::split_rigid;
 use crate::notation::quantity;
 use crate::plugin::{Plugin, SetupError, SimBuilder};
-use crate::rigid::{Drive, DrivenRotation, checked_axis};
+use crate::rigid::{Drive, DrivenRotation, MovingFunction, checked_axis};
 use crate::scene::{Expression, Select, Vec3};
 use crate::schedule::{Clock, StepError};
 
@@ -46,6 +46,7 @@ impl Plugin for PrescribedRotation {
         }
         for body in rigid {
             let rate = Box::new(Rate(self.rate.clone()));
+            sim.extend(MovingFunction { body, value: self.rate.clone(), place: DVec3::ZERO });
             sim.extend(DrivenRotation { body, by: Self::NAME, axis, rate });
         }
         Ok(())

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::body::{RigidBodies, RigidBody, RigidParts, RigidState};
 use super::constraint::{Constraint, DrivenBody, DrivenRotation, HalvedBody, RotationConstraint};
+use super::followed::FollowedFunctions;
 use super::inertia::{MassProperties, Tilt};
 use super::nodes::{Nodes, RigidNode};
 use super::rotation::Inertia;
@@ -79,7 +80,8 @@ impl Formulation for Rigid {
             setup.resources.insert(all);
             Ok(())
         });
-        systems::add(sim, ids);
+        let followed = FollowedFunctions::new(sim.take_extensions(), sim.scene().time.end);
+        systems::add(sim, ids, followed);
         Ok(())
     }
 }

@@ -3,6 +3,7 @@
 mod body;
 mod constraint;
 mod faces;
+mod followed;
 mod formulation;
 mod inertia;
 mod nodes;
@@ -16,6 +17,7 @@ mod wrench;
 
 pub use body::{RIGID_BODIES, RigidBodies, RigidBody, RigidState};
 pub use constraint::{Drive, DrivenBody, DrivenRotation, HalvedBody};
+pub use followed::MovingFunction;
 pub(crate) use formulation::checked_axis;
 pub use formulation::{Rigid, Rotation};
 pub(crate) use inertia::sphere_of;

@@ -4,6 +4,7 @@ use glam::{DMat3, DVec3};
 
 use super::body::{RIGID_BODIES, RigidBodies, RigidBody, RigidState, Turning};
 use super::constraint::RotationConstraint;
+use super::followed::FollowedFunctions;
 use super::wrench::Wrench;
 use crate::parallel::{BlockSum, sum_over_blocks};
 use crate::plugin::SimBuilder;
@@ -18,7 +19,7 @@ const RIGID_WEIGHT: &str = "rigid_weight";
 const RIGID_KICK: &str = "rigid_kick";
 
 /// Adds the systems of all rigid bodies.
-pub(super) fn add(sim: &mut SimBuilder<'_>, ids: BodySet) {
+pub(super) fn add(sim: &mut SimBuilder<'_>, ids: BodySet, followed: FollowedFunctions) {
     let phases: Vec<PhaseId> = sim.phases_of(&ids);
     let (gravity, end) = (sim.gravity(), sim.scene().time.end);
     sim.add_system(
@@ -41,7 +42,7 @@ pub(super) fn add(sim: &mut SimBuilder<'_>, ids: BodySet) {
         .on_phases(phases.clone()),
     );
     sim.add_system(
-        System::new(Stage::FinalIntegrate, RIGID_KICK, RigidKick { end })
+        System::new(Stage::FinalIntegrate, RIGID_KICK, RigidKick { end, followed })
             .on_phases(phases)
             .touches_packed(RIGID_BODIES, Mode::Writes)
             .reads::<Position>()
@@ -223,6 +224,7 @@ const MIN_STEPS: f64 = 100.0;
 
 struct RigidKick {
     end: f64,
+    followed: FollowedFunctions,
 }
 
 impl Run for RigidKick {
@@ -260,6 +262,7 @@ impl Run for RigidKick {
             }
             propose(body, driven, self.end, step);
         }
+        self.followed.propose(self.end / MIN_STEPS, step);
         Ok(())
     }
 

@@ -56,6 +56,42 @@ fn plates(conditions: &str) -> Result<Simulation, SceneError> {
 }
 
 #[test]
+fn short_pulses_and_fast_swings_move_rigid_bodies() {
+    // Of ten thousandths of the duration; on 20 cm x 10 cm of 500 kg/m3. Then a mean of 5 m/s.
+    let jump = |value: &str| format!("{value}*step(t - 0.0503)*step(0.05031 - t)");
+    let conditions = [
+        format!(r#"Force(on: Select(body: "left"), value: ("{}", None))"#, jump("1e6")),
+        format!(r#"BodyForce(on: Select(body: "left"), value: ("{}", None))"#, jump("1e5")),
+        format!(r#"Traction(on: Select(body: "left", face: MinX), value: ("{}", None))"#, jump("1e7")),
+        format!(r#"Velocity(on: Select(body: "left"), value: ("{}", 0.0))"#, jump("1e3")),
+        r#"Velocity(on: Select(body: "left"), value: ("0.2*sin(2e3*pi*t)^2", 0.0))"#.to_owned(),
+        r#"Displacement(on: Select(body: "left"), value: ("0.01*sin(2e3*pi*t - pi/2) + 0.01", 0.0))"#
+            .to_owned(),
+    ];
+    for (k, condition) in conditions.iter().enumerate() {
+        let mut sim = plates(condition).unwrap_or_else(|error| panic!("{error}"));
+        let mut highest = f64::NEG_INFINITY;
+        let center = |sim: &Simulation| {
+            let bodies = sim.resources().get::<RigidBodies>();
+            bodies.iter().next().map(|body| body.state).expect("a body")
+        };
+        sim.run(|sim| {
+            highest = highest.max(center(sim).center.x + 0.2);
+            true
+        })
+        .expect("a run");
+        let end = center(&sim);
+        let (found, expected) = match k {
+            0..=2 => (end.velocity.x, 1.0),
+            3 => (end.center.x + 0.2, 0.01),
+            4 => (end.center.x + 0.2, 0.01),
+            _ => (highest, 0.02),
+        };
+        assert!((found / expected - 1.0).abs() < 0.005, "{condition}: {found}, expected {expected}");
+    }
+}
+
+#[test]
 fn a_motion_that_differs_within_a_rigid_body_is_an_error() {
     let turns = [
         r#"Displacement(on: Select(body: "left"), value: ("x*(cos(2*t)-1)-y*sin(2*t)", "x*sin(2*t)+y*(cos(2*t)-1)"))"#,

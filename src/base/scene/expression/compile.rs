@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use super::ExpressionError;
-use super::functions::{BINARY, Binary, CONSTANTS, UNARY, Unary, VARIABLES};
+use super::functions::{
+    BINARY, Binary, CONSTANTS, MINUS, NEGATIVE, OVER, PLUS, POWER, TIMES, UNARY, Unary, VARIABLES,
+};
 use crate::scene::literal::refused;
 use crate::scene::names::nearest;
 use crate::scene::slips::is_unit;
@@ -165,7 +167,7 @@ impl Compiler<'_> {
 
     fn unary(&mut self, function: Unary) {
         match self.program.last_mut() {
-            Some(Op::Constant(value)) => *value = function(*value),
+            Some(Op::Constant(value)) => *value = (function.at)(*value),
             _ => self.program.push(Op::Unary(function)),
         }
     }
@@ -184,7 +186,7 @@ impl Compiler<'_> {
         match *self.program.as_slice() {
             [.., Op::Constant(a), Op::Constant(b)] => {
                 self.program.truncate(self.program.len() - 2);
-                self.program.push(Op::Constant(function(a, b)));
+                self.program.push(Op::Constant((function.at)(a, b)));
             }
             _ => self.program.push(Op::Binary(function)),
         }
@@ -199,10 +201,10 @@ impl Compiler<'_> {
         loop {
             if self.take('+') {
                 self.product()?;
-                self.binary(|a, b| a + b);
+                self.binary(PLUS);
             } else if self.take('-') {
                 self.product()?;
-                self.binary(|a, b| a - b);
+                self.binary(MINUS);
             } else {
                 self.depth -= 1;
                 return Ok(());
@@ -222,10 +224,10 @@ impl Compiler<'_> {
                     ));
                 }
                 self.signed()?;
-                self.binary(|a, b| a * b);
+                self.binary(TIMES);
             } else if self.take('/') {
                 self.signed()?;
-                self.binary(|a, b| a / b);
+                self.binary(OVER);
             } else {
                 return Ok(());
             }
@@ -239,7 +241,7 @@ impl Compiler<'_> {
         }
         if self.take('-') {
             self.signed()?;
-            self.unary(|a| -a);
+            self.unary(NEGATIVE);
         } else if self.take('+') {
             self.signed()?;
         } else {
@@ -253,7 +255,7 @@ impl Compiler<'_> {
         self.atom()?;
         if self.take('^') {
             self.signed()?;
-            self.binary(f64::powf);
+            self.binary(POWER);
         }
         Ok(())
     }

@@ -1,5 +1,7 @@
 //! The constants and functions that an expression may name.
 
+use std::f64::consts::FRAC_PI_2;
+
 /// Names of the variables, in the order in which an evaluation gets them.
 pub(super) const VARIABLES: [&str; 4] = ["x", "y", "z", "t"];
 
@@ -47,33 +49,88 @@ pub(in crate::scene) fn is_reserved(name: &str) -> bool {
         || BINARY.iter().any(|(other, _)| *other == name)
 }
 
-pub(super) type Unary = fn(f64) -> f64;
-pub(super) type Binary = fn(f64, f64) -> f64;
+/// A function of one argument.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Unary {
+    pub at: fn(f64) -> f64,
+    pub course: Course,
+}
+
+/// How a function of one argument changes with it: what its values over an interval follow from.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Course {
+    /// It only rises, or only falls.
+    Monotonic,
+    /// It falls to its smallest value at zero, and rises from there.
+    Even,
+    /// It has its largest value of one at this angle and its smallest of minus one half a turn from there.
+    Wave(f64),
+    /// It has poles.
+    Poles,
+}
+
+/// A function of two arguments.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Binary {
+    pub at: fn(f64, f64) -> f64,
+    pub kind: BinaryKind,
+}
+
+/// How a function of two arguments changes with them.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum BinaryKind {
+    /// With one argument held it only rises, or only falls, with the other one.
+    Monotonic,
+    Quotient,
+    Power,
+    Angle,
+    Remainder,
+}
+
+const fn monotonic(at: fn(f64) -> f64) -> Unary {
+    Unary { at, course: Course::Monotonic }
+}
+
+const fn with(at: fn(f64) -> f64, course: Course) -> Unary {
+    Unary { at, course }
+}
+
+pub(super) const NEGATIVE: Unary = monotonic(|a| -a);
+pub(super) const PLUS: Binary = Binary { at: |a, b| a + b, kind: BinaryKind::Monotonic };
+pub(super) const MINUS: Binary = Binary { at: |a, b| a - b, kind: BinaryKind::Monotonic };
+pub(super) const TIMES: Binary = Binary { at: |a, b| a * b, kind: BinaryKind::Monotonic };
+pub(super) const OVER: Binary = Binary { at: |a, b| a / b, kind: BinaryKind::Quotient };
+pub(super) const POWER: Binary = Binary { at: f64::powf, kind: BinaryKind::Power };
 
 pub(super) const UNARY: [(&str, Unary); 19] = [
-    ("abs", f64::abs),
-    ("sqrt", f64::sqrt),
-    ("exp", f64::exp),
-    ("ln", f64::ln),
-    ("log10", f64::log10),
-    ("sin", f64::sin),
-    ("cos", f64::cos),
-    ("tan", f64::tan),
-    ("asin", f64::asin),
-    ("acos", f64::acos),
-    ("atan", f64::atan),
-    ("sinh", f64::sinh),
-    ("cosh", f64::cosh),
-    ("tanh", f64::tanh),
-    ("floor", f64::floor),
-    ("sign", |s| if s == 0.0 { 0.0 } else { s.signum() }),
-    ("step", |s| if s < 0.0 { 0.0 } else { 1.0 }),
-    ("ramp", |s| s.clamp(0.0, 1.0)),
-    ("smoothstep", smoothstep),
+    ("abs", with(f64::abs, Course::Even)),
+    ("sqrt", monotonic(f64::sqrt)),
+    ("exp", monotonic(f64::exp)),
+    ("ln", monotonic(f64::ln)),
+    ("log10", monotonic(f64::log10)),
+    ("sin", with(f64::sin, Course::Wave(FRAC_PI_2))),
+    ("cos", with(f64::cos, Course::Wave(0.0))),
+    ("tan", with(f64::tan, Course::Poles)),
+    ("asin", monotonic(f64::asin)),
+    ("acos", monotonic(f64::acos)),
+    ("atan", monotonic(f64::atan)),
+    ("sinh", monotonic(f64::sinh)),
+    ("cosh", with(f64::cosh, Course::Even)),
+    ("tanh", monotonic(f64::tanh)),
+    ("floor", monotonic(f64::floor)),
+    ("sign", monotonic(|s| if s == 0.0 { 0.0 } else { s.signum() })),
+    ("step", monotonic(|s| if s < 0.0 { 0.0 } else { 1.0 })),
+    ("ramp", monotonic(|s| s.clamp(0.0, 1.0))),
+    ("smoothstep", monotonic(smoothstep)),
 ];
 
-pub(super) const BINARY: [(&str, Binary); 5] =
-    [("min", min), ("max", max), ("pow", f64::powf), ("atan2", f64::atan2), ("mod", f64::rem_euclid)];
+pub(super) const BINARY: [(&str, Binary); 5] = [
+    ("min", Binary { at: min, kind: BinaryKind::Monotonic }),
+    ("max", Binary { at: max, kind: BinaryKind::Monotonic }),
+    ("pow", POWER),
+    ("atan2", Binary { at: f64::atan2, kind: BinaryKind::Angle }),
+    ("mod", Binary { at: f64::rem_euclid, kind: BinaryKind::Remainder }),
+];
 
 fn smoothstep(s: f64) -> f64 {
     let s = s.clamp(0.0, 1.0);

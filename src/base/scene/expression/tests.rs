@@ -91,6 +91,54 @@ fn errors_point_at_their_place() {
 }
 
 #[test]
+fn ranges_hold_the_values_and_short_pulses() {
+    let range =
+        |text: &str, from: f64, to: f64| of(text).range_over_time(DVec3::new(2.0, 0.0, 0.0), [from, to]);
+    for (text, from, to, expected) in [
+        ("3", 0.0, 1.0, [3.0, 3.0]),
+        ("x*t", 1.0, 2.0, [2.0, 4.0]),
+        ("5*step(t - 0.5)*step(0.50001 - t)", 0.0, 1.0, [0.0, 5.0]),
+        ("5*step(t - 0.5)", 0.5, 1.0, [5.0, 5.0]),
+        ("sin(2*pi*t)", 0.0, 10.0, [-1.0, 1.0]),
+        ("sin(2*pi*t)", 0.0, 0.25, [0.0, 1.0]),
+        ("cos(2*pi*t)", 0.25, 0.75, [-1.0, 0.0]),
+        ("(t - 1)^2", 0.0, 3.0, [0.0, 4.0]),
+        ("(t - 1)^3", 0.0, 3.0, [-1.0, 8.0]),
+        ("abs(t - 1)", 0.0, 3.0, [0.0, 2.0]),
+        ("exp(-t)", 0.0, 1.0, [(-1.0_f64).exp(), 1.0]),
+        ("1/(1 + t)", 0.0, 1.0, [0.5, 1.0]),
+        ("1/t", 0.0, 1.0, [f64::NEG_INFINITY, f64::INFINITY]),
+        ("tan(t)", 0.0, 1.0, [f64::NEG_INFINITY, f64::INFINITY]),
+        ("mod(t, 1)", 0.25, 0.75, [0.25, 0.75]),
+        ("mod(t, 1)", 0.25, 1.75, [0.0, 1.0]),
+        ("atan2(t, 1)", 0.0, 1.0, [0.0, std::f64::consts::FRAC_PI_4]),
+        ("min(t, 0.5)", 0.0, 1.0, [0.0, 0.5]),
+        ("smoothstep(t/2)", 0.0, 1.0, [0.0, 0.5]),
+    ] {
+        let found = range(text, from, to);
+        let near = |k: usize| found[k] == expected[k] || (found[k] - expected[k]).abs() < 1e-12;
+        assert!(near(0) && near(1), "{text} from {from} to {to}: {found:?}");
+    }
+    // Where the time occurs twice, bounds may be wider than the values, but hold them.
+    for text in [
+        "t*sin(9*t) - t^2",
+        "t^t",
+        "sqrt(t)*cosh(t - 1)",
+        "mod(7*t, 2)*sign(t - 0.3)",
+        "atan2(t - 0.4, t - 0.6)",
+    ] {
+        for k in 0..50 {
+            let from = 0.02 * f64::from(k);
+            let [low, high] = range(text, from, from + 0.05);
+            let times = (0..=10).map(|k| from + 0.005 * f64::from(k));
+            let values = times.map(|t| of(text).eval(DVec3::new(2.0, 0.0, 0.0), t));
+            values
+                .for_each(|value| assert!(low - 1e-12 <= value && value <= high + 1e-12, "{text}: {value}"));
+        }
+    }
+}
+
+#[test]
 fn every_name_has_a_meaning() {
     let count = functions::VARIABLES.len()
         + functions::CONSTANTS.len()
