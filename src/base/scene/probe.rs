@@ -108,10 +108,12 @@ pub enum Quantity {
     Velocity,
     /// Sum of all forces on the particles of the selection except those of supports \[N\]. Where a condition
     /// holds or drives the selection, it is the force that the body exerts on the condition, its own weight
-    /// included: the weight of a body that hangs from its support points down. Of a rigid body it is that on
-    /// the whole body. Walls and half-spaces have no weight: on them it is that of flows and contacts. On a
-    /// part of a wall it is 6 and 3 % off in water 10 and 20 particles deep, as flows act below the surface
-    /// and the tension that this makes along the wall counts where the part ends: use `FluidForce` there.
+    /// included: the weight of a body that hangs from its support points down. What accelerates the driven
+    /// particles themselves, their mass times their acceleration, is not part of it: a rigid body that is
+    /// lifted shows its weight. Of a rigid body it is that on the whole body. Walls and half-spaces have no
+    /// weight: on them it is that of flows and contacts. On a part of a wall it is 6 and 3 % off in water 10
+    /// and 20 particles deep, as flows act below the surface and the tension that this makes along the wall
+    /// counts where the part ends: use `FluidForce` there.
     Force,
     /// Torque of the same forces about the centre of mass of the selection, of walls, which have no mass,
     /// about that of their volume \[N m\]. A half-space has none: use `Moment`. On a part of a wall use

@@ -90,10 +90,14 @@ fn errors_point_at_their_place() {
     assert!(wide.parse::<Expression>().is_err());
 }
 
+fn parsed(text: &str) -> Expression {
+    text.parse().unwrap_or_else(|error| panic!("{text}: {error}"))
+}
+
 #[test]
 fn ranges_hold_the_values_and_short_pulses() {
     let range =
-        |text: &str, from: f64, to: f64| of(text).range_over_time(DVec3::new(2.0, 0.0, 0.0), [from, to]);
+        |text: &str, from: f64, to: f64| parsed(text).range_over_time(DVec3::new(2.0, 0.0, 0.0), [from, to]);
     for (text, from, to, expected) in [
         ("3", 0.0, 1.0, [3.0, 3.0]),
         ("x*t", 1.0, 2.0, [2.0, 4.0]),
@@ -131,7 +135,7 @@ fn ranges_hold_the_values_and_short_pulses() {
             let from = 0.02 * f64::from(k);
             let [low, high] = range(text, from, from + 0.05);
             let times = (0..=10).map(|k| from + 0.005 * f64::from(k));
-            let values = times.map(|t| of(text).eval(DVec3::new(2.0, 0.0, 0.0), t));
+            let values = times.map(|t| parsed(text).eval(DVec3::new(2.0, 0.0, 0.0), t));
             values
                 .for_each(|value| assert!(low - 1e-12 <= value && value <= high + 1e-12, "{text}: {value}"));
         }
