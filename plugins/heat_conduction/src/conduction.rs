@@ -14,7 +14,7 @@ use meshless_engine::world::{
 };
 
 use crate::ConductedTemperature;
-use crate::neighborhood::Neighborhood;
+use crate::neighborhood::ConductingNeighborhood;
 
 /// Conduction data of a body.
 #[derive(Clone, Copy)]
@@ -66,7 +66,7 @@ struct Conduction {
     axes: usize,
     volumes: PresentVolumes,
     /// Neighbourhoods of the rows of a body.
-    shapes: Vec<Neighborhood>,
+    shapes: Vec<ConductingNeighborhood>,
     gains: Vec<Gain>,
     sums: Vec<Heat>,
 }
@@ -126,7 +126,7 @@ impl Conduction {
         let mut now = view.write::<Temperature>()?;
         let mut last = view.write::<ConductedTemperature>()?;
         let volumes = self.volumes.of_body(&view, &rows)?;
-        self.shapes.resize(rows.len(), Neighborhood::NONE);
+        self.shapes.resize(rows.len(), ConductingNeighborhood::NONE);
         self.gains.resize(rows.len(), Gain::default());
         let pairs = PresentPairs { solid: &*solid, position: bytemuck::cast_slice(&position), volumes };
         let field = HeatField { pairs, first: rows.start, axes: self.axes };
@@ -173,15 +173,15 @@ struct HeatField<'a> {
 }
 
 impl HeatField<'_> {
-    fn shape(&self, row: usize) -> Neighborhood {
-        Neighborhood::new(self.axes, |take| self.pairs.of(row, |pair| take(pair.weight, pair.x_ij)))
+    fn shape(&self, row: usize) -> ConductingNeighborhood {
+        ConductingNeighborhood::new(self.axes, |take| self.pairs.of(row, |pair| take(pair.weight, pair.x_ij)))
     }
 
     /// Heat gain of a particle.
     fn gain(
         &self,
         row: usize,
-        shapes: &[Neighborhood],
+        shapes: &[ConductingNeighborhood],
         temperature: &[Temperature],
         conductivity: f64,
     ) -> Gain {

@@ -1,7 +1,7 @@
 //! The weight of a pair along its direction, so that a particle conducts as a continuum does.
 //!
-//! Heat is conducted alike along all axes where `sum_j V_j w_ij g_i(x_ij) x_ij (x) x_ij` is the identity: sums
-//! over neighbours are then exact for quadratic temperatures, whatever their places. With
+//! Heat is conducted alike along all axes where `sum_j V_j w_ij g_i(x_ij) x_ij (x) x_ij` is the identity:
+//! sums over neighbours are then exact for quadratic temperatures, whatever their places. With
 //! `M = sum_j V_j w_ij x_ij (x) x_ij`, in d dimensions,
 //!
 //! `g = 1/2 [(d + 2) (x . M^-2 x) / (x . M^-1 x) - tr M^-1] + (x . C x) / (x . M^-1 x)`.
@@ -15,22 +15,23 @@ use meshless_engine::linalg::Sym3;
 
 /// Minimum determinant of a moment matrix that shows a shape: below it the neighbourhood counts as round.
 const SINGULAR: f64 = 0.02;
-/// Smallest pivot of the equations of C, over their diagonal, with which they have a solution: neighbours in
-/// one row or in one plane do not determine it.
-const DETERMINED: f64 = 1e-6;
+/// Smallest pivot of the equations of C, over their diagonal, with which they are solved: neighbours in one
+/// row or in one plane do not determine it, and few neighbours, as of debris, hardly do. Corners of intact
+/// bodies have 0.27 and more.
+const DETERMINED: f64 = 0.1;
 /// Numbers of a symmetric matrix in space.
 const COMPONENTS: usize = 6;
 
 /// The neighbourhood of a particle.
 #[derive(Clone, Copy)]
-pub(crate) struct Neighborhood {
+pub(crate) struct ConductingNeighborhood {
     /// M^-1.
     inverse: Sym3,
     /// C.
     correction: Sym3,
 }
 
-impl Neighborhood {
+impl ConductingNeighborhood {
     /// Of no neighbours.
     pub const NONE: Self = Self { inverse: Sym3::ZERO, correction: Sym3::ZERO };
 
@@ -43,7 +44,7 @@ impl Neighborhood {
         let round = || if mean > 0.0 { Sym3::IDENTITY * (1.0 / mean) } else { Sym3::ZERO };
         let inverse = moment.inverse_above(SINGULAR).unwrap_or_else(round);
         let mut found = Self { inverse, correction: Sym3::ZERO };
-        let mut equations = Equations::new(axes);
+        let mut equations = CorrectionEquations::new(axes);
         pairs(&mut |weight, x| {
             let along = x.dot(inverse * x);
             if along > 0.0 {
@@ -71,7 +72,7 @@ impl Neighborhood {
 /// The equations `sum_j V_j w_ij (x . C x) / (x . M^-1 x) x (x) x = I - sum_j V_j w_ij g x (x) x` of C, in
 /// the components of symmetric matrices, off the diagonal times the root of two: with them they are positive
 /// definite.
-struct Equations {
+struct CorrectionEquations {
     /// Number of components that the space has.
     size: usize,
     axes: usize,
@@ -79,7 +80,7 @@ struct Equations {
     right: [f64; COMPONENTS],
 }
 
-impl Equations {
+impl CorrectionEquations {
     fn new(axes: usize) -> Self {
         let mut right = [0.0; COMPONENTS];
         right[..axes].fill(1.0);

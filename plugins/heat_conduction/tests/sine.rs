@@ -100,8 +100,8 @@ fn no_heat_leaves_a_surface() {
 
 #[test]
 fn a_stretched_bar_conducts_along_its_present_length() {
-    // To 0.6, 1.3, 1.4 times its length, so short a time that it has not begun to move: the volume has changed
-    // as much, and a cosine decays by k/(rho c) pi^2 over the stretch. Where layers are twice as far apart as
+    // To 0.6 to 2 times its length, so short a time that it has not begun to move: the volume has changed as
+    // much, and a cosine decays by k/(rho c) pi^2 over the stretch. Where layers are twice as far apart as
     // particles in them, Lagrangian neighbourhoods have pairs that would conduct from cold to hot.
     let pi = std::f64::consts::PI;
     for formulation in FORMULATIONS {
