@@ -59,7 +59,16 @@ impl<'a> VariantAccess<'a> for Variant<'a> {
     }
 
     fn tuple_variant<V: Visitor<'a>>(self, length: usize, visitor: V) -> Result<V::Value, Error> {
-        self.value.deserialize_tuple(length, visitor)
+        match &self.value.node.kind {
+            NodeKind::Tuple(entries) if entries.len() == length => {
+                self.value.deserialize_tuple(length, visitor)
+            }
+            _ => {
+                let (name, entries) = (self.name(), ["first", "second", "third", "fourth"]);
+                let entries = entries[..length.min(entries.len())].join(", ");
+                self.wrong(format!("`{name}({entries})`, {length} entries without names"))
+            }
+        }
     }
 
     fn struct_variant<V: Visitor<'a>>(
