@@ -1,7 +1,9 @@
 //! Periodic domains.
 
-use super::NeighborError;
 use glam::DVec3;
+
+use super::NeighborError;
+use crate::parallel::{FourLanes, Number, Vector};
 
 pub(super) const AXIS_NAMES: [char; 3] = ['x', 'y', 'z'];
 
@@ -70,6 +72,18 @@ impl Periodic {
         x_ij - self.length * (x_ij * self.inverse_length).map(nearest_integer)
     }
 
+    /// The same for the vectors in lanes.
+    #[inline(always)]
+    #[must_use]
+    pub fn minimal_images<A: FourLanes>(&self, x_ij: Vector<A>) -> Vector<A> {
+        let (length, inverse) = (self.length, self.inverse_length);
+        Vector {
+            x: minimal_images(x_ij.x, length.x, inverse.x),
+            y: minimal_images(x_ij.y, length.y, inverse.y),
+            z: minimal_images(x_ij.z, length.z, inverse.z),
+        }
+    }
+
     /// The periodic image of a position inside the box, `min <= x < max` on periodic axes.
     pub fn wrap(&self, position: DVec3) -> DVec3 {
         let mut wrapped = position - self.length * ((position - self.min) * self.inverse_length).floor();
@@ -90,4 +104,10 @@ pub const SHIFT: f64 = 6755399441055744.0;
 #[inline(always)]
 fn nearest_integer(x: f64) -> f64 {
     (x + SHIFT) - SHIFT
+}
+
+/// Components to the nearest image in lanes.
+#[inline(always)]
+fn minimal_images<A: FourLanes>(x: Number<A>, length: f64, inverse: f64) -> Number<A> {
+    x - (x * inverse + SHIFT - SHIFT) * length
 }

@@ -11,7 +11,8 @@ use crate::scene::{Source, parse};
 use crate::simulation::Simulation;
 use crate::world::{BodyId, DeformationGradient, Force, Position};
 
-fn simulation(dimension: &str, shape: &str) -> Simulation {
+/// A soft body of that shape, with a spacing of 0.01 m.
+pub(crate) fn simulation(dimension: &str, shape: &str) -> Simulation {
     let text = format!(
         r#"(dimension: {dimension},
             materials: {{"soft": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)}},

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::facet_places::{FacetPlaces, point};
 use crate::neighbors::Periodic;
 use crate::shapes::directed_area;
 use crate::skins::Patch;
@@ -20,139 +21,97 @@ pub(super) struct Foot {
     pub distance: f64,
 }
 
-/// A facet in this step, with a ball around it.
-#[derive(Clone, Copy, Default)]
-pub(super) struct FacetPlace {
-    center: DVec3,
-    /// How far it reaches from there, with something for round-off, m.
-    radius: f64,
-    /// Where its vertices are, m; segments have two, and the last one twice.
-    corners: [DVec3; 3],
-}
-
-impl FacetPlace {
-    /// Where the point with these shares of its vertices is, m.
-    #[inline(always)]
-    pub fn point(&self, shares: [f64; 3]) -> DVec3 {
-        point(&self.corners, shares)
-    }
-}
-
-/// Computes where the facets of a patch are; `places` has one for every facet of the skin.
-pub(super) fn locate(patch: &Patch, facets: &[u32], places: &mut Vec<FacetPlace>) {
-    let axes = patch.skin.facets.axes;
-    places.resize(patch.skin.facets.corners.len(), FacetPlace::default());
-    for &facet in facets {
-        let [a, b, c] = patch.places(facet);
-        let center = if axes == 2 { 0.5 * (a + b) } else { (a + b + c) / 3.0 };
-        let far = a.distance_squared(center).max(b.distance_squared(center)).max(c.distance_squared(center));
-        places[facet as usize] = FacetPlace { center, radius: far.sqrt() * (1.0 + 1e-9), corners: [a, b, c] };
-    }
-}
-
 /// Facets of a patch among which a foot is looked for.
 #[derive(Clone, Copy)]
 pub(super) struct NearFacets<'a> {
     pub patch: &'a Patch,
     /// All facets of the patch.
-    pub places: &'a [FacetPlace],
+    pub places: &'a FacetPlaces,
     pub facets: &'a [u32],
     /// Across periodic sides the image of a position that is nearest to a facet counts, if there are any.
     pub periodic: Option<Periodic>,
 }
 
-/// The facets in which points of one facet may have their feet, kept from one of its points to the next.
-pub(super) struct CloseFacets {
-    /// The facet of the points.
-    of: u32,
-    facets: [u32; ROOM],
-    /// Their number; none if they do not fit.
-    count: Option<usize>,
-    /// The one with the foot of the last point.
-    pub last: Option<u32>,
+/// The nearest facet so far.
+pub(super) struct Nearest<'a> {
+    near: &'a NearFacets<'a>,
+    x: DVec3,
+    /// Distance below which a facet counts, m.
+    pub reach: f64,
+    /// The square of the distance, m2, and the facet, with the shares of its vertices at the foot.
+    found: Option<(f64, u32, [f64; 3])>,
 }
 
-/// Room for facets that are close to one: in three dimensions some twenty are on flat sides.
-const ROOM: usize = 40;
-
-impl Default for CloseFacets {
-    fn default() -> Self {
-        Self { of: u32::MAX, facets: [0; ROOM], count: None, last: None }
-    }
-}
-
-impl CloseFacets {
-    /// Looks for those of `near` no farther than `farthest`, m, from that facet.
+impl<'a> Nearest<'a> {
+    /// None yet; those that are `farthest`, m, from `x` or farther do not count.
     #[inline(always)]
-    pub fn find(&mut self, number: u32, own: &FacetPlace, near: &NearFacets<'_>, farthest: f64) {
-        if self.of == number {
-            return;
-        }
-        (self.of, self.last) = (number, None);
-        let mut count = 0;
-        for &facet in near.facets {
-            let FacetPlace { center, radius, .. } = &near.places[facet as usize];
-            let apart = center.distance_squared(near.image(own.center, *center));
-            if apart <= (farthest + radius + own.radius).powi(2) {
-                self.facets[count % ROOM] = facet;
-                count += 1;
-            }
-        }
-        self.count = (count <= ROOM).then_some(count);
+    pub fn new(near: &'a NearFacets<'a>, x: DVec3, farthest: f64) -> Self {
+        Self { near, x, reach: farthest, found: None }
     }
 
-    /// What has been found; all of `near` if there was no space.
+    /// Looks at a facet. Of facets that are equally near it is the first one.
     #[inline(always)]
-    pub fn facets<'a>(&'a self, near: &NearFacets<'a>) -> &'a [u32] {
-        self.count.map_or(near.facets, |count| &self.facets[..count])
+    pub fn look(&mut self, facet: u32) {
+        let corners = &self.near.places.corners[facet as usize];
+        let x = self.near.image_at(self.x, facet);
+        let is_segment = self.near.patch.skin.facets.axes == 2;
+        let shares = if is_segment { on_segment(x, corners) } else { on_triangle(x, corners) };
+        let squared = point(corners, shares).distance_squared(x);
+        let is_nearer = match self.found {
+            None => squared < self.reach * self.reach,
+            Some((least, first, _)) => squared < least || (squared == least && facet < first),
+        };
+        if is_nearer {
+            (self.found, self.reach) = (Some((squared, facet, shares)), squared.sqrt());
+        }
+    }
+
+    /// The facet.
+    #[inline(always)]
+    pub fn facet(&self) -> Option<u32> {
+        self.found.map(|(_, facet, _)| facet)
+    }
+
+    /// The foot, if a facet was near.
+    #[inline]
+    pub fn foot(&self) -> Option<Foot> {
+        let NearFacets { patch, places, .. } = *self.near;
+        let axes = patch.skin.facets.axes;
+        let (squared, facet, shares) = self.found?;
+        let corners = &places.corners[facet as usize];
+        let x = self.near.image_at(self.x, facet);
+        let inner = shares[..axes].iter().filter(|share| **share > 0.0).count();
+        if inner == axes {
+            let normal = directed_area(axes, corners).normalize_or_zero();
+            let distance = (x - corners[0]).dot(normal);
+            return Some(Foot { x, facet, shares, normal, distance });
+        }
+        // Outside if in front of the mean of the facets that meet there.
+        let arm = x - point(corners, shares);
+        let sign = if arm.dot(mean_normal(patch, facet, shares)) < 0.0 { -1.0 } else { 1.0 };
+        let distance = sign * squared.sqrt();
+        Some(Foot { x, facet, shares, normal: arm.normalize_or_zero() * sign, distance })
     }
 }
 
 impl NearFacets<'_> {
     /// The image of a position that is nearest to the centre of a facet, m.
     #[inline(always)]
-    fn image(&self, x: DVec3, center: DVec3) -> DVec3 {
+    pub fn image(&self, x: DVec3, center: DVec3) -> DVec3 {
         self.periodic.map_or(x, |periodic| center + periodic.minimal_image(x - center))
     }
 
-    /// The facet with the point nearest to `x`, with the square of its distance, m2, and the shares of the
-    /// vertices there, if that is less than `farthest`, m. Of facets that are equally near it is the first
-    /// one. It is looked for from `begin` on, which need not be near; without one, from where the centre is
-    /// nearest.
+    /// The same, for the facet of that number.
     #[inline(always)]
-    fn nearest(&self, x: DVec3, farthest: f64, begin: Option<u32>) -> Option<(f64, u32, [f64; 3])> {
-        let Self { patch, places, facets, .. } = *self;
-        let axes = patch.skin.facets.axes;
-        let begin = match begin {
-            Some(facet) => facet,
-            None => self.with_nearest_center(x)?,
-        };
-        let mut nearest = (farthest * farthest, 0, [0.0; 3]);
-        let (mut reach, mut is_found) = (farthest, false);
-        // Begun near by, so that most of the others are passed over.
-        let mut look = |facet: u32| {
-            let FacetPlace { center, radius, corners } = &places[facet as usize];
-            let x = self.image(x, *center);
-            if center.distance_squared(x) > (reach + radius).powi(2) {
-                return;
-            }
-            let shares = if axes == 2 { on_segment(x, corners) } else { on_triangle(x, corners) };
-            let squared = point(corners, shares).distance_squared(x);
-            if squared < nearest.0 || (squared == nearest.0 && facet < nearest.1) {
-                (nearest, reach, is_found) = ((squared, facet, shares), squared.sqrt(), true);
-            }
-        };
-        look(begin);
-        facets.iter().filter(|facet| **facet != begin).for_each(|facet| look(*facet));
-        is_found.then_some(nearest)
+    fn image_at(&self, x: DVec3, facet: u32) -> DVec3 {
+        self.periodic.map_or(x, |_| self.image(x, self.places.balls[facet as usize].xyz()))
     }
 
     /// The facet whose centre is nearest.
-    #[inline(always)]
     fn with_nearest_center(&self, x: DVec3) -> Option<u32> {
         let (mut begin, mut least) = (*self.facets.first()?, f64::INFINITY);
         for &facet in self.facets {
-            let center = self.places[facet as usize].center;
+            let center = self.places.balls[facet as usize].xyz();
             let squared = center.distance_squared(self.image(x, center));
             if squared < least {
                 (begin, least) = (facet, squared);
@@ -162,31 +121,20 @@ impl NearFacets<'_> {
     }
 }
 
-/// The foot of `x` on the nearest of some facets, looked for from `begin` on, if it is no farther than
-/// `farthest`, m. Facets whose balls are farther than the nearest one so far are passed over.
-#[inline]
-pub(super) fn foot(near: &NearFacets<'_>, x: DVec3, farthest: f64, begin: Option<u32>) -> Option<Foot> {
-    let NearFacets { patch, places, .. } = *near;
-    let axes = patch.skin.facets.axes;
-    let (squared, facet, shares) = near.nearest(x, farthest, begin)?;
-    let FacetPlace { center, corners, .. } = &places[facet as usize];
-    let x = near.image(x, *center);
-    let inner = shares[..axes].iter().filter(|share| **share > 0.0).count();
-    if inner == axes {
-        let normal = directed_area(axes, corners).normalize_or_zero();
-        let distance = (x - corners[0]).dot(normal);
-        return Some(Foot { x, facet, shares, normal, distance });
+/// The foot of `x` on the nearest of some facets, if it is no farther than `farthest`, m. Facets whose balls
+/// are farther than the nearest one so far are passed over.
+pub(super) fn foot(near: &NearFacets<'_>, x: DVec3, farthest: f64) -> Option<Foot> {
+    let mut nearest = Nearest::new(near, x, farthest);
+    // Begun near by, so that most of the others are passed over.
+    let begin = near.with_nearest_center(x)?;
+    for &facet in std::iter::once(&begin).chain(near.facets) {
+        let ball = near.places.balls[facet as usize];
+        let (center, radius) = (ball.xyz(), ball.0[3]);
+        if center.distance_squared(near.image(x, center)) <= (nearest.reach + radius).powi(2) {
+            nearest.look(facet);
+        }
     }
-    // Outside if in front of the mean of the facets that meet there.
-    let arm = x - point(corners, shares);
-    let sign = if arm.dot(mean_normal(patch, facet, shares)) < 0.0 { -1.0 } else { 1.0 };
-    let distance = sign * squared.sqrt();
-    Some(Foot { x, facet, shares, normal: arm.normalize_or_zero() * sign, distance })
-}
-
-#[inline(always)]
-fn point(corners: &[DVec3; 3], shares: [f64; 3]) -> DVec3 {
-    shares[0] * corners[0] + shares[1] * corners[1] + shares[2] * corners[2]
+    nearest.foot()
 }
 
 /// The normals of the facets that meet at a vertex or an edge, weighted by the angles at which they do

@@ -6,7 +6,11 @@ mod near_tool;
 
 mod points;
 
+mod facet_places;
+
 mod foot;
+
+mod close_facets;
 
 mod skin_end;
 

@@ -20,7 +20,9 @@ use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
 
-use super::foot::{CloseFacets, FacetPlace, Foot, locate};
+use super::close_facets::CloseFacets;
+use super::facet_places::FacetPlaces;
+use super::foot::Foot;
 use super::near_skins::{NearSkins, speed_of_points};
 use super::side::{FacetPoint, PointPush, PointTouch, SkinSide, shift_foot};
 use crate::contact::active::{ActiveContacts, MinimumLength};
@@ -50,7 +52,7 @@ pub(in crate::contact) struct SkinPair {
     near: NearSkins,
     periodic: Periodic,
     /// Where the facets of each side are that are near the other.
-    places: [Vec<FacetPlace>; 2],
+    places: [FacetPlaces; 2],
     /// The points of each side against the facets of the other.
     pub passes: [ActiveContacts<PointTouch, PointPush, MinimumLength>; 2],
 }
@@ -67,7 +69,7 @@ impl SkinPair {
             }
             contacts
         });
-        let places = skins.each_ref().map(|skin| Vec::with_capacity(skin.facets.corners.len()));
+        let places = skins.each_ref().map(|skin| FacetPlaces::with_capacity(skin.facets.corners.len()));
         let near = NearSkins::new(skins.each_ref().map(|skin| &**skin), periodic);
         let patches = skins.map(Patch::new);
         Self { interaction, sides, patches, keeps_reference: false, rule, near, periodic, places, passes }
@@ -125,7 +127,7 @@ impl SkinPair {
         let wanted = Wanted { mobility: damping_ratio > 0.0, gradients: !self.interaction.is_elastic() };
         self.patches.iter_mut().zip(&views).for_each(|(patch, view)| patch.update(view, dt, wanted));
         for (side, places) in self.places.iter_mut().enumerate() {
-            locate(&self.patches[side], &self.near.facets[side], places);
+            places.locate(&self.patches[side], &self.near.facets[side]);
         }
         let mut energies = ContactEnergy::default();
         let (mut stiffest, mut gap) = (Maximum::default(), MinimumLength::default());
@@ -156,7 +158,7 @@ impl SkinPair {
         let periodic = self.periodic.any().then_some(self.periodic);
         let Self { interaction, patches, rule, near, places, passes, .. } = self;
         let (own, other) = (&patches[side], &patches[1 - side]);
-        let places = [&places[side][..], &places[1 - side][..]];
+        let places = [&places[side], &places[1 - side]];
         let at = SkinSide { interaction, own, other, places, rule, periodic, length, dt };
         let facets_near = |point: u32| near.facets_near(side, at.point(point).facet);
         let gap = passes[side].find(

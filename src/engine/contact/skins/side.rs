@@ -2,7 +2,9 @@
 
 use glam::{DMat3, DVec3};
 
-use super::foot::{CloseFacets, FacetPlace, Foot, NearFacets, foot, slopes};
+use super::close_facets::CloseFacets;
+use super::facet_places::FacetPlaces;
+use super::foot::{Foot, NearFacets, slopes};
 use crate::contact::active::MinimumLength;
 use crate::contact::laws::Touch;
 use crate::contact::response::{ContactEnergy, ContactState, History, Interaction, Losses};
@@ -70,7 +72,7 @@ pub(super) struct SkinSide<'a> {
     pub own: &'a Patch,
     pub other: &'a Patch,
     /// Where the facets of both are.
-    pub places: [&'a [FacetPlace]; 2],
+    pub places: [&'a FacetPlaces; 2],
     pub rule: &'a QuadratureRule,
     /// Of the domain, if it has periodic sides.
     pub periodic: Option<Periodic>,
@@ -182,12 +184,10 @@ impl SkinSide<'_> {
     #[inline(always)]
     fn nearest(&self, point: u32, facets: &[u32], close: &mut CloseFacets) -> Option<PointTouch> {
         let FacetPoint { facet, shares } = self.point(point);
-        let (own, farthest) = (&self.places[0][facet as usize], DEPTH * self.length);
-        let near = NearFacets { patch: self.other, places: self.places[1], facets, periodic: self.periodic };
-        close.find(facet, own, &near, farthest);
-        let facets = close.facets(&near);
-        let foot = foot(&NearFacets { facets, ..near }, own.point(shares), farthest, close.last)?;
-        close.last = Some(foot.facet);
+        let [own, places] = self.places;
+        let near = NearFacets { patch: self.other, places, facets, periodic: self.periodic };
+        let (of, x) = ((facet, &own.balls[facet as usize]), own.point(facet, shares));
+        let foot = close.foot(&near, of, x, DEPTH * self.length)?;
         Some(PointTouch { foot, weight: 0.0 })
     }
 

@@ -8,7 +8,8 @@
 
 use glam::DVec3;
 
-use super::foot::{FacetPlace, Foot, NearFacets, foot, locate};
+use super::facet_places::FacetPlaces;
+use super::foot::{Foot, NearFacets, foot};
 use super::points::{Extremes, PressPass, ToolView, VertexPress};
 use super::skin_end::share_at_end;
 use super::tool_edges::{Tip, tips_of};
@@ -32,7 +33,7 @@ pub(super) struct Tips {
     list: Option<Vec<Tip>>,
     /// What each presses on in this step.
     pushes: Vec<TipPush>,
-    places: Vec<FacetPlace>,
+    places: FacetPlaces,
 }
 
 /// The spring of a point on a facet; without a force it does not touch.
@@ -60,7 +61,7 @@ impl Tips {
         if list.is_empty() || facets.is_empty() {
             return Extremes::default();
         }
-        locate(on.patch, facets, places);
+        places.locate(on.patch, facets);
         let periodic = on.sides.periodic.any().then_some(on.sides.periodic);
         let near = NearFacets { patch: on.patch, places, facets, periodic };
         let bounds = periodic.is_none().then(|| {
@@ -130,7 +131,7 @@ impl Tip {
 
     /// Whether it is inside of the body, farther below the skin than it may be to touch it.
     fn is_lost(&self, near: &NearFacets<'_>, on: &PressPass<'_>) -> bool {
-        let foot = foot(near, on.tool.place(self.point), LOST * on.patch.skin.spacing, None);
+        let foot = foot(near, on.tool.place(self.point), LOST * on.patch.skin.spacing);
         foot.is_some_and(|foot| {
             let is_inside = foot.distance < 0.0 && on.patch.is_there(foot.facet);
             is_inside && share_at_end(on.patch, on.sides, &foot) > 0.0
@@ -142,7 +143,7 @@ impl Tip {
     fn foot(&self, near: &NearFacets<'_>, on: &PressPass<'_>) -> Option<(Foot, f64)> {
         let spacing = on.patch.skin.spacing;
         let of = |point: DVec3, reach: f64| {
-            let foot = foot(near, on.tool.place(point), DEEPEST * spacing + reach, None)?;
+            let foot = foot(near, on.tool.place(point), DEEPEST * spacing + reach)?;
             on.patch.is_there(foot.facet).then_some(foot)
         };
         match self.round {
