@@ -56,7 +56,7 @@ pub fn tool_of_triangles() -> Source {
             contacts: [Contact(between: ("cube", "tool"), law: Penalty(), friction: 0.4, restitution: 0.7),
                        Contact(between: ("cube", "plate"), law: Hertz(), friction: 0.2)],
             conditions: [Fix(on: Select(body: "plate")),
-                         Velocity(on: Select(body: "tool"), value: ("5*sin(2e6*t)", None, "-50*smoothstep(t/1e-7)"))],
+                         Velocity(on: Select(body: "tool"), value: ("5*sin(2e6*t)", None, -50))],
             plugins: [artificial_viscosity()],
             time: (end: 1e-3))"#,
         env!("CARGO_MANIFEST_DIR")

@@ -183,8 +183,8 @@ mod tests {
     use crate::skins::{Patch, SkinColumns, Wanted};
     use crate::world::BodyId;
 
-    /// The distance of `x` from a triangle or segment: the least of those from its plane, if the projection is
-    /// inside, and from its sides.
+    /// The distance of `x` from a triangle or segment: the least of those from its plane, if the projection
+    /// is inside, and from its sides.
     fn distance(x: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
         let side = |p: DVec3, q: DVec3| {
             let part = (x - p).dot(q - p) / p.distance_squared(q).max(f64::MIN_POSITIVE);
