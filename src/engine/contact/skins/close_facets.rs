@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use super::foot::{Foot, NearFacets, Nearest, foot};
+use super::foot::{Foot, NearFacets, NearestFacet, foot};
 use crate::parallel::{FourLanes, HotLoop, Lanes4, Vector, run_hot};
 
 /// Room for facets that are close to one: in three dimensions some twenty are on flat sides.
@@ -85,14 +85,14 @@ impl CloseFacets {
 
     /// The nearest to `x`.
     #[inline(always)]
-    fn nearest<'a>(&mut self, near: &'a NearFacets<'a>, x: DVec3, farthest: f64) -> Nearest<'a> {
+    fn nearest<'a>(&mut self, near: &'a NearFacets<'a>, x: DVec3, farthest: f64) -> NearestFacet<'a> {
         let Self { count, facets, centers: [xs, ys, zs], radii, squared, last, .. } = self;
         let count = *count;
         for k in 0..count {
             let (x, y, z) = (xs[k] - x.x, ys[k] - x.y, zs[k] - x.z);
             squared[k] = x * x + y * y + z * z;
         }
-        let mut nearest = Nearest::new(near, x, farthest);
+        let mut nearest = NearestFacet::new(near, x, farthest);
         if count == 0 {
             return nearest;
         }

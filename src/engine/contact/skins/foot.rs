@@ -33,7 +33,7 @@ pub(super) struct NearFacets<'a> {
 }
 
 /// The nearest facet so far.
-pub(super) struct Nearest<'a> {
+pub(super) struct NearestFacet<'a> {
     near: &'a NearFacets<'a>,
     x: DVec3,
     /// Distance below which a facet counts, m.
@@ -42,7 +42,7 @@ pub(super) struct Nearest<'a> {
     found: Option<(f64, u32, [f64; 3])>,
 }
 
-impl<'a> Nearest<'a> {
+impl<'a> NearestFacet<'a> {
     /// None yet; those that are `farthest`, m, from `x` or farther do not count.
     #[inline(always)]
     pub fn new(near: &'a NearFacets<'a>, x: DVec3, farthest: f64) -> Self {
@@ -124,7 +124,7 @@ impl NearFacets<'_> {
 /// The foot of `x` on the nearest of some facets, if it is no farther than `farthest`, m. Facets whose balls
 /// are farther than the nearest one so far are passed over.
 pub(super) fn foot(near: &NearFacets<'_>, x: DVec3, farthest: f64) -> Option<Foot> {
-    let mut nearest = Nearest::new(near, x, farthest);
+    let mut nearest = NearestFacet::new(near, x, farthest);
     // Begun near by, so that most of the others are passed over.
     let begin = near.with_nearest_center(x)?;
     for &facet in std::iter::once(&begin).chain(near.facets) {
