@@ -10,8 +10,8 @@ use crate::skins::Patch;
 pub(super) struct FacetPlaces {
     /// Where the vertices are, m; segments have two, and the last one twice.
     pub corners: Vec<[DVec3; 3]>,
-    /// A ball around each: its centre, and how far the facet reaches from there, with something for round-off,
-    /// m.
+    /// A ball around each: its centre, and how far the facet reaches from there, with something for
+    /// round-off, m.
     pub balls: Vec<Lanes4>,
 }
 
