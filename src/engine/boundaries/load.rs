@@ -69,9 +69,11 @@ pub(super) fn apply(
     flow_load::add(label, &law, &parts, sim, &declare);
     let kinds: Vec<BodyKind> = parts.iter().map(|part| sim.body(part.body).kind).collect();
     let turns = kinds.contains(&BodyKind::Rigid);
-    let rigid = parts.iter().zip(&kinds).find(|(_, kind)| **kind == BodyKind::Rigid);
-    if let Some((body, place)) = rigid.and_then(|(part, _)| Some((part.body, *part.points.first()?))) {
-        law.functions().into_iter().for_each(|value| sim.extend(MovingFunction { body, value, place }));
+    let rigid = parts.iter().zip(&kinds).filter(|(_, kind)| **kind == BodyKind::Rigid);
+    let places = rigid.filter_map(|(part, _)| Some((part.body, *part.points.first()?)));
+    for (k, (body, place)) in places.enumerate() {
+        let functions = law.functions().into_iter().filter(|value| k == 0 || value.depends_on_place());
+        functions.for_each(|value| sim.extend(MovingFunction { body, value, place }));
     }
     let load = Load { label, law, parts, kinds, forces, next: Vec::new() };
     let mut system = System::new(Stage::External, label, load).on_phases(phases).by_body();

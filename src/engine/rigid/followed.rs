@@ -12,7 +12,7 @@ use crate::world::BodyId;
 /// A function of time in a load on a rigid body or in its prescribed motion; conditions add it with
 /// [`SimBuilder::extend`](crate::plugin::SimBuilder::extend).
 pub struct MovingFunction {
-    /// Body, of several one.
+    /// Body; one of several if the function is the same at all places.
     pub body: BodyId,
     /// The function.
     pub value: Expression,

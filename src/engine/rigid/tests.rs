@@ -92,6 +92,22 @@ fn short_pulses_and_fast_swings_move_rigid_bodies() {
 }
 
 #[test]
+fn a_pulse_of_one_load_on_two_bodies_moves_the_one_where_it_is() {
+    let pulse = "1e6*step(t - 0.0503)*step(0.05031 - t)";
+    for (there, expected) in [("step(-x)", [0.5, 0.0]), ("step(x)", [0.0, 0.5])] {
+        let condition = format!(r#"Force(on: Select(), value: ("{pulse}*{there}", None))"#);
+        let mut sim = plates(&condition).unwrap_or_else(|error| panic!("{error}"));
+        sim.run(|_| true).expect("a run");
+        let bodies = sim.resources().get::<RigidBodies>();
+        let found: Vec<f64> = bodies.iter().map(|body| body.state.velocity.x).collect();
+        // Both of 10 kg share 10 N s by their particles.
+        for (found, expected) in found.iter().zip(expected) {
+            assert!((found - expected).abs() < 0.005 * 0.5, "{there}: {found}, expected {expected}");
+        }
+    }
+}
+
+#[test]
 fn a_motion_that_differs_within_a_rigid_body_is_an_error() {
     let turns = [
         r#"Displacement(on: Select(body: "left"), value: ("x*(cos(2*t)-1)-y*sin(2*t)", "x*sin(2*t)+y*(cos(2*t)-1)"))"#,

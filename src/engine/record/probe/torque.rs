@@ -42,8 +42,8 @@ impl BlockSum for TorqueSum {
 
 impl TorqueGauge {
     /// Names of the particle columns that it reads.
-    pub(super) const NEEDS: [&'static str; 4] =
-        [Force::NAME, Mass::NAME, Position::NAME, ReferenceVolume::NAME];
+    pub(super) const NEEDS: [&'static str; 5] =
+        [Force::NAME, Mass::NAME, Position::NAME, ReferenceVolume::NAME, Removed::NAME];
 
     /// The three components, N m, of the forces on the particles that have not been removed. Sums run along
     /// the tree of blocks, body by body.
