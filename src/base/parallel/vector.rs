@@ -143,6 +143,16 @@ impl<A: Arithmetic> SubAssign for Vector<A> {
 #[derive(Clone, Copy)]
 pub struct Matrix<A: Arithmetic>(pub [Vector<A>; 3]);
 
+impl<A: Arithmetic> Matrix<A> {
+    /// `self v + w`.
+    #[inline(always)]
+    pub fn mul_add(self, v: Vector<A>, w: Vector<A>) -> Vector<A> {
+        let Self([x, y, z]) = self;
+        let plane = y.mul_add(v.y, x.mul_add(v.x, w));
+        if A::AXES == 3 { z.mul_add(v.z, plane) } else { plane }
+    }
+}
+
 impl<A: Arithmetic> Add for Matrix<A> {
     type Output = Self;
 
@@ -192,7 +202,8 @@ mod tests {
             let (b, c) = (Vector::from_rows(a, rows(b)), Vector::from_rows(a, rows(c)));
             let dot = b.dot(c);
             let matrix = Matrix([b, c, b + c]);
-            let value = matrix * (c - b * 2.0) / (b.length_squared() + 0.5) * dot.min(1.0);
+            let turned = matrix.mul_add(c - b * 2.0, b);
+            let value = turned / (b.length_squared() + 0.5) * dot.min(1.0);
             (value.sum(), dot.if_below(0.4, (dot.max(-0.2) - 1.0) / 3.0).lanes().0)
         }
     }
@@ -207,7 +218,7 @@ mod tests {
                 let (b, c) = (flat(b(t)), flat(c(t)));
                 let dot = b.dot(c);
                 let matrix = DMat3::from_cols(b, c, b + c);
-                expected += matrix * (c - b * 2.0) / (b.length_squared() + 0.5) * dot.min(1.0);
+                expected += (matrix * (c - b * 2.0) + b) / (b.length_squared() + 0.5) * dot.min(1.0);
                 let lane = if dot < 0.4 { (dot.max(-0.2) - 1.0) / 3.0 } else { 0.0 };
                 assert!((lanes[k] - lane).abs() < 1e-15, "{lanes:?} {lane}");
             }

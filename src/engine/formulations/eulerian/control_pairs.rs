@@ -5,6 +5,7 @@ use glam::{DMat3, DVec3};
 use super::control_rows::Carried;
 use super::near::EulerianNeighbors;
 use super::particle::EulerianParticle;
+use super::within::filled_up;
 use crate::parallel::{FourLanes, Lanes4, Matrix, Number, Vector};
 
 /// The pairs of a body.
@@ -41,14 +42,6 @@ struct OwnControl<A: FourLanes> {
     modulus_before: f64,
 }
 
-/// The kernel at four neighbours.
-struct FourKernel {
-    /// Pair weight `w = -W' / r`.
-    weight: Lanes4,
-    /// Second derivative `W''`.
-    curvature: Lanes4,
-}
-
 /// The sums so far.
 struct ControlSums<A: FourLanes> {
     force: Vector<A>,
@@ -58,32 +51,36 @@ struct ControlSums<A: FourLanes> {
     energy_before: Number<A>,
 }
 
-/// Four neighbours: x_ij, X_ij, F_j, Young's moduli now and before, and volume.
+/// Four neighbours.
 struct FourOthers<A: FourLanes> {
-    arm: Vector<A>,
+    /// -x_ij.
+    back: Vector<A>,
+    /// X_ij.
     original: Vector<A>,
-    deformation: Matrix<A>,
+    /// F_i X_ij - x_ij.
+    own_error: Vector<A>,
+    /// F_j X_ij - x_ij.
+    other_error: Vector<A>,
+    /// Young's moduli now and before.
     modulus: Number<A>,
     before: Number<A>,
     volume: Number<A>,
+}
+
+/// The kernel at four neighbours.
+struct FourKernel {
+    /// Pair weight `w = -W' / r`.
+    weight: Lanes4,
+    /// Second derivative `W''`.
+    curvature: [f32; 4],
 }
 
 impl ControlPairs<'_> {
     /// The sums of row `i`.
     #[inline(always)]
     pub fn of_row<A: FourLanes>(&self, a: A, i: usize) -> ControlRowSums {
-        let own = &self.carried[i];
-        let [x, y, z] = own.columns;
-        let column = |column: Lanes4| Vector::splat(a, column.xyz());
-        let own = OwnControl {
-            place: Vector::splat(a, self.points[i].place.xyz()),
-            original: Vector::splat(a, own.original.xyz()),
-            deformation: Matrix([column(x), column(y), column(z)]),
-            modulus: x.0[3],
-            modulus_before: y.0[3],
-        };
-        let zero = Vector::zero(a);
-        let none = Number::zero(a);
+        let own = self.own(a, i);
+        let (zero, none) = (Vector::zero(a), Number::zero(a));
         let mut sums = ControlSums {
             force: zero,
             couple: [zero; 3],
@@ -97,53 +94,73 @@ impl ControlPairs<'_> {
         let (weight_fours, weight_rest) = weights.as_chunks::<4>();
         let (curvature_fours, curvature_rest) = curvatures.as_chunks::<4>();
         for n in 0..fours.len() {
-            let kernel =
-                FourKernel { weight: Lanes4(weight_fours[n]), curvature: in_double(curvature_fours[n]) };
-            self.add(a, &own, fours[n], kernel, &mut sums);
+            let kernel = FourKernel { weight: Lanes4(weight_fours[n]), curvature: curvature_fours[n] };
+            self.add(a, &own, &fours[n], kernel, &mut sums);
         }
         if !rest.is_empty() {
-            // The particle itself fills the lanes that are left, without a weight.
-            let mut four = [i as u32; 4];
-            let mut kernel = FourKernel { weight: Lanes4::ZERO, curvature: Lanes4::ZERO };
+            // What fills the lanes that are left has no weight.
+            let mut kernel = FourKernel { weight: Lanes4::ZERO, curvature: [0.0; 4] };
             for lane in 0..rest.len() {
-                four[lane] = rest[lane];
-                (kernel.weight.0[lane], kernel.curvature.0[lane]) =
-                    (weight_rest[lane], f64::from(curvature_rest[lane]));
+                kernel.weight.0[lane] = weight_rest[lane];
+                kernel.curvature[lane] = curvature_rest[lane];
             }
-            self.add(a, &own, four, kernel, &mut sums);
+            self.add(a, &own, &filled_up(rest), kernel, &mut sums);
         }
+        let force = total(a, sums.force, sums.stiffness);
         let [x, y, z] = sums.couple;
+        let (x, y, z) = (total(a, x, sums.energy), total(a, y, sums.energy_before), total(a, z, none));
         ControlRowSums {
-            force: sums.force.sum(),
-            couple: DMat3::from_cols(x.sum(), y.sum(), z.sum()),
-            stiffness: sums.stiffness.sum(),
-            energy: sums.energy.sum(),
-            energy_before: sums.energy_before.sum(),
+            force: force.xyz(),
+            couple: DMat3::from_cols(x.xyz(), y.xyz(), z.xyz()),
+            stiffness: force.0[3],
+            energy: x.0[3],
+            energy_before: y.0[3],
+        }
+    }
+
+    #[inline(always)]
+    fn own<A: FourLanes>(&self, a: A, i: usize) -> OwnControl<A> {
+        let Carried { columns: [x, y, z], original } = self.carried[i];
+        let deformation = [Vector::splat(a, x.xyz()), Vector::splat(a, y.xyz()), Vector::splat(a, z.xyz())];
+        OwnControl {
+            place: Vector::splat(a, self.points[i].place.xyz()),
+            original: Vector::splat(a, original.xyz()),
+            deformation: Matrix(deformation),
+            modulus: x.0[3],
+            modulus_before: y.0[3],
         }
     }
 
     /// Reads four neighbours.
     #[inline(always)]
-    fn four<A: FourLanes>(&self, a: A, own: &OwnControl<A>, four: [u32; 4]) -> FourOthers<A> {
+    fn four<A: FourLanes>(&self, a: A, own: &OwnControl<A>, four: &[u32; 4]) -> FourOthers<A> {
         let [j, k, l, m] = [four[0] as usize, four[1] as usize, four[2] as usize, four[3] as usize];
         let points = [&self.points[j], &self.points[k], &self.points[l], &self.points[m]];
         let of = [&self.carried[j], &self.carried[k], &self.carried[l], &self.carried[m]];
         let [x, y, z, _] = a.transpose([points[0].place, points[1].place, points[2].place, points[3].place]);
-        let arm = Vector::new(a, [x, y, z]) - own.place;
+        let back = own.place - Vector::new(a, [x, y, z]);
         let [x, y, z, _] = a.transpose([of[0].original, of[1].original, of[2].original, of[3].original]);
         let original = Vector::new(a, [x, y, z]) - own.original;
-        let columns =
-            |n: usize| a.transpose([of[0].columns[n], of[1].columns[n], of[2].columns[n], of[3].columns[n]]);
-        let [[ax, ay, az, modulus], [bx, by, bz, before], [cx, cy, cz, volume]] =
-            [columns(0), columns(1), columns(2)];
+        let [ax, ay, az, modulus] =
+            a.transpose([of[0].columns[0], of[1].columns[0], of[2].columns[0], of[3].columns[0]]);
+        let [bx, by, bz, before] =
+            a.transpose([of[0].columns[1], of[1].columns[1], of[2].columns[1], of[3].columns[1]]);
+        let [cx, cy, cz, volume] =
+            a.transpose([of[0].columns[2], of[1].columns[2], of[2].columns[2], of[3].columns[2]]);
         let deformation = Matrix([
             Vector::new(a, [ax, ay, az]),
             Vector::new(a, [bx, by, bz]),
             Vector::new(a, [cx, cy, cz]),
         ]);
-        let number = |lanes| Number::new(a, lanes);
-        let (modulus, before, volume) = (number(modulus), number(before), number(volume));
-        FourOthers { arm, original, deformation, modulus, before, volume }
+        FourOthers {
+            back,
+            original,
+            own_error: own.deformation.mul_add(original, back),
+            other_error: deformation.mul_add(original, back),
+            modulus: Number::new(a, modulus),
+            before: Number::new(a, before),
+            volume: Number::new(a, volume),
+        }
     }
 
     /// Adds four neighbours.
@@ -152,64 +169,62 @@ impl ControlPairs<'_> {
         &self,
         a: A,
         own: &OwnControl<A>,
-        four: [u32; 4],
+        four: &[u32; 4],
         kernel: FourKernel,
         sums: &mut ControlSums<A>,
     ) {
-        let FourOthers { arm, original, deformation, modulus, before, volume } = self.four(a, own, four);
-        let (weight, curvature) = (Number::new(a, kernel.weight), Number::new(a, kernel.curvature));
-        let (own_guess, other_guess) = (own.deformation * original, deformation * original);
-        let square = arm.length_squared().max(f64::MIN_POSITIVE);
-        // s over |x| of both.
+        let FourOthers { back, original, own_error, other_error, modulus, before, volume } =
+            self.four(a, own, four);
+        let [p, q, r, s] = kernel.curvature;
+        let curvature = Number::new(a, Lanes4([f64::from(p), f64::from(q), f64::from(r), f64::from(s)]));
+        let weight = Number::new(a, kernel.weight);
+        let square = back.length_squared().max(f64::MIN_POSITIVE);
         let over = 1.0 / square;
-        let (own_share, other_share) = (own_guess.dot(arm) * over - 1.0, other_guess.dot(arm) * over - 1.0);
+        // -s over |x|, and the squares of the whole errors over that of x.
+        let (own_share, other_share) = (own_error.dot(back) * over, other_error.dot(back) * over);
+        let (own_square, other_square) =
+            (own_error.length_squared() * over, other_error.length_squared() * over);
         // Pairs that have met on the way.
         let apart = original.length_squared().max(f64::MIN_POSITIVE);
         let known = (self.support * self.support / apart).min(1.0);
         let volume = volume * known.squared();
         // Nothing acts across cracks.
-        let own_modulus = (-modulus).if_below(0.0, Number::splat(a, own.modulus));
-        let other_modulus = if own.modulus > 0.0 { modulus } else { Number::zero(a) };
-        let own_before = (-before).if_below(0.0, Number::splat(a, own.modulus_before));
-        let (own_stiffness, other_stiffness) =
-            (volume * own_modulus * own_share, volume * other_modulus * other_share);
-        // The whole errors, of which a part is resisted, and the rest of the error along the pair.
-        let (own_error, other_error) = (own_guess - arm, other_guess - arm);
-        let (half, one) = (0.5 * weight, Number::splat(a, 1.0));
-        // Neighbours slide past each other where either of them flows.
+        let own_modulus = volume * (-modulus).if_below(0.0, Number::splat(a, own.modulus));
+        let other_modulus = if own.modulus > 0.0 { volume * modulus } else { Number::zero(a) };
+        // Neighbours slide past each other where either of them flows: of the whole errors a part is
+        // resisted, and the rest of the error along the pair.
         let part = modulus.min(own.modulus) * self.across;
-        let rest = one - part;
-        let (own_square, other_square) =
-            (own_error.length_squared() * over, other_error.length_squared() * over);
-        let (own_whole, other_whole) = (volume * own_modulus * part, volume * other_modulus * part);
-        let (own_along, other_along) = (rest * own_stiffness, rest * other_stiffness);
-        let errors = own_along * own_share + other_along * other_share;
-        let all_errors = errors + own_whole * own_square + other_whole * other_square;
+        let rest = 1.0 - part;
+        let (own_whole, other_whole) = (own_modulus * part, other_modulus * part);
+        let (own_along, other_along) = (own_modulus * rest * own_share, other_modulus * rest * other_share);
+        let along = own_along.mul_add(own_share, other_along * other_share);
+        let own_energy = own_along.mul_add(own_share, own_whole * own_square);
+        let energy = own_energy + other_along.mul_add(other_share, other_whole * other_square);
+        let (half, back_half) = (0.5 * weight, -0.5 * weight);
+        sums.stiffness = half.mul_add(own_modulus + other_modulus, sums.stiffness);
+        let scale = weight * square;
+        sums.energy = scale.mul_add(own_energy, sums.energy);
+        let own_before = volume * (-before).if_below(0.0, Number::splat(a, own.modulus_before));
+        let part = before.min(own.modulus_before) * self.across;
+        let own_along_square = own_share.squared();
+        let error = part.mul_add(own_square - own_along_square, own_along_square);
+        sums.energy_before = (scale * own_before).mul_add(error, sums.energy_before);
         // From w = -W' / r the slope of the weight is -(W'' + w) / r.
-        let slope =
-            half * (2.0 * (own_along + other_along) + errors) + 0.25 * (curvature + weight) * all_errors;
-        let own_force = half * own_along;
-        let guess = own_guess.mul_add(own_force, other_guess * (half * other_along));
-        let own_push = own_error * (half * own_whole);
-        sums.force += guess - arm * slope - own_push - other_error * (half * other_whole);
-        let couple = arm.mul_add(own_force, own_push);
+        let slope = half * (along - (own_along + other_along)) + 0.25 * (curvature + weight) * energy;
+        sums.force = back.mul_add(slope, sums.force);
+        sums.force = own_error.mul_add(back_half * (own_along + own_whole), sums.force);
+        sums.force = other_error.mul_add(back_half * (other_along + other_whole), sums.force);
+        let couple = back.mul_add(half * own_along, own_error * (half * own_whole));
         sums.couple[0] = couple.mul_add(original.x, sums.couple[0]);
         sums.couple[1] = couple.mul_add(original.y, sums.couple[1]);
         if A::AXES == 3 {
             sums.couple[2] = couple.mul_add(original.z, sums.couple[2]);
         }
-        let along = own_share.squared();
-        let before_part = before.min(own.modulus_before) * self.across;
-        let error = weight * volume * square;
-        sums.stiffness += half * volume * (own_modulus + other_modulus);
-        sums.energy = (error * (rest * along + part * own_square)).mul_add(own_modulus, sums.energy);
-        let with_before = error * ((one - before_part) * along + before_part * own_square);
-        sums.energy_before = with_before.mul_add(own_before, sums.energy_before);
     }
 }
 
-/// Four numbers in double precision.
+/// The sums over the lanes of a vector, and of a number in the last one.
 #[inline(always)]
-fn in_double([a, b, c, d]: [f32; 4]) -> Lanes4 {
-    Lanes4([f64::from(a), f64::from(b), f64::from(c), f64::from(d)])
+fn total<A: FourLanes>(a: A, Vector { x, y, z }: Vector<A>, last: Number<A>) -> Lanes4 {
+    a.sums([x.lanes(), y.lanes(), z.lanes(), last.lanes()])
 }

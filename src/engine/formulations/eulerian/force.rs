@@ -62,19 +62,24 @@ impl PlaneOrSpace for EulerianForceRows<'_> {
         let EulerianRows { lists, near, points, stresses, control, .. } = self.packed;
         for (k, force) in self.force.iter_mut().enumerate() {
             let i = self.first + k;
-            let (place, own) = (points[i].place, &stresses[i]);
+            let (place, own, around) = (points[i].place, &stresses[i], &near.around[i]);
             let (neighbors, weights) = near.row(lists.pairs.offsets()[i], i);
             let mut sum = Lanes4::ZERO;
             for n in 0..neighbors.len() {
                 let j = neighbors[n] as usize;
                 let other = &stresses[j];
                 let arm = a.sub(points[j].place, place);
-                let mut traction = Lanes4::ZERO;
-                for axis in 0..D {
-                    let column = a.add(own.columns[axis], other.columns[axis]);
-                    traction = a.scale_add(arm.0[axis], column, traction);
+                let mut traction = a.scale(arm.0[0], other.columns[0]);
+                for axis in 1..D {
+                    traction = a.scale_add(arm.0[axis], other.columns[axis], traction);
                 }
                 sum = a.scale_add(weights[n] * other.traction.0[3], traction, sum);
+            }
+            let volume = place.0[3];
+            let of_volume = if volume > 0.0 { own.traction.0[3] / volume } else { 0.0 };
+            let first = around.first_moment * of_volume;
+            for axis in 0..D {
+                sum = a.scale_add(first[axis], own.columns[axis], sum);
             }
             *force = Force(sum.xyz() * own.traction.0[3] + control.force[i].xyz());
         }

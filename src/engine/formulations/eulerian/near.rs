@@ -1,12 +1,14 @@
 //! The neighbours within the support at the end of a step, with their weights, and the sums that correct the
 //! gradient.
 
+use std::ops::Range;
+
 use super::particle::EulerianParticle;
-use super::within::{CHUNK, Within};
-use crate::correction::MomentMatrix;
+use super::within::{Arms, BATCH, Center, FOURS, MomentSums, filled_up, records, velocities, weighted};
 use crate::kernels::{Kernel, KernelProfile, KernelVisitor, ProfiledKernel, ScaledKernel};
 use crate::linalg::Sym3;
-use crate::parallel::{FourLanes, Lanes4, PlaneOrSpace, Split, run_hot_in};
+use crate::neighbors::NeighborList;
+use crate::parallel::{FourLanes, HotLoop, Lanes4, Split, run_hot_on};
 
 /// Minimum determinant of M_i in units of `(tr M_i / d)^d`. Below it the neighbours are so nearly on a line,
 /// or in space in a plane, that a gradient across it is noise: what is left of a body that has separated
@@ -44,6 +46,19 @@ impl EulerianNeighbors {
     pub fn row(&self, start: usize, i: usize) -> (&[u32], &[f64]) {
         let part = start..start + self.around[i].count as usize;
         (&self.neighbors[part.clone()], &self.weights[part])
+    }
+
+    /// What a pass over some rows writes.
+    pub fn of_rows<'a>(&'a mut self, lists: &'a NeighborList, rows: Range<usize>) -> NeighborRows<'a> {
+        let offsets = &lists.offsets()[rows.start..=rows.end];
+        let slots = offsets[0]..offsets[rows.len()];
+        NeighborRows {
+            offsets,
+            neighbors: &mut self.neighbors[slots.clone()],
+            weights: &mut self.weights[slots.clone()],
+            curvatures: &mut self.curvatures[slots],
+            around: &mut self.around[rows],
+        }
     }
 }
 
@@ -100,7 +115,7 @@ impl KernelVisitor for ComputePairs<'_, '_> {
 
     fn visit<K: KernelProfile>(self, kernel: ProfiledKernel<K>) {
         let kernel = kernel.scaled(self.kernel.smoothing_length(self.support));
-        run_hot_in(self.plane, PairLoop { kernel, look: self });
+        run_hot_on(self.plane, PairLoop { kernel, look: self });
     }
 }
 
@@ -109,54 +124,143 @@ struct PairLoop<'a, 'r, K: KernelProfile> {
     look: ComputePairs<'a, 'r>,
 }
 
-impl<K: KernelProfile> PlaneOrSpace for PairLoop<'_, '_, K> {
+impl<K: KernelProfile> HotLoop for PairLoop<'_, '_, K> {
+    type Output = ();
+
     #[inline(always)]
-    fn run<A: FourLanes, const D: usize>(self, a: A) {
+    fn run<A: FourLanes>(self, a: A) {
         let Self { kernel, look: ComputePairs { support, lists, points, first, rows, .. } } = self;
-        let limit = support * support;
         let itself = kernel.w(0.0);
         let begin = rows.offsets[0];
-        let mut values = [0.0; CHUNK];
+        let mut batch = Batch::NONE;
         for k in 0..rows.around.len() {
-            let own = points[first + k].place;
-            let start = rows.offsets[k] - begin;
-            let list = if own.0[3] > 0.0 { rows.offsets[k]..rows.offsets[k + 1] } else { 0..0 };
-            let (mut moment, mut first_moment) = ([Lanes4::ZERO; D], Lanes4::ZERO);
-            let (mut weight_sum, mut filled) = (0.0, itself * points[first + k].velocity.0[3]);
-            let mut count = 0;
-            for list in lists[list].chunks(CHUNK) {
-                let from = start + count;
-                let slots = from..from + list.len();
-                let (neighbors, squares) = (&mut rows.neighbors[slots.clone()], &mut rows.weights[slots]);
-                let found = Within { neighbors, squares }.find(a, list, (own, limit), points);
-                let part = from..from + found;
-                let neighbors = &rows.neighbors[part.clone()];
-                let (weights, curvatures) = (&mut rows.weights[part.clone()], &mut rows.curvatures[part]);
-                // By number: a loop over contiguous rows is computed several at once.
-                for n in 0..found {
-                    let distance = weights[n].sqrt();
-                    weights[n] = kernel.pair_weight(distance);
-                    values[n] = kernel.w(distance);
-                    curvatures[n] = kernel.d2w_dr2(distance) as f32;
-                }
-                for n in 0..found {
-                    let EulerianParticle { place: other, velocity } = points[neighbors[n] as usize];
-                    let (arm, weight) = (a.sub(other, own), other.0[3] * weights[n]);
-                    let weighted = a.scale(weight, arm);
-                    for axis in 0..D {
-                        moment[axis] = a.scale_add(arm.0[axis], weighted, moment[axis]);
-                    }
-                    first_moment = a.add(first_moment, weighted);
-                    weight_sum += weight;
-                    filled += velocity.0[3] * values[n];
-                }
-                count += found;
+            let own = points[first + k];
+            let list = if own.place.0[3] > 0.0 { rows.offsets[k]..rows.offsets[k + 1] } else { 0..0 };
+            let slots = rows.offsets[k] - begin..rows.offsets[k] - begin + list.len();
+            let center = Center::new(own.place, support);
+            let count = center.find(a, &lists[list], points, &mut rows.neighbors[slots.clone()]);
+            let mut sums = NearbySums::ZERO;
+            let mut from = slots.start;
+            for near in rows.neighbors[slots][..count].chunks(BATCH) {
+                let fours = batch.gather(a, &center, near, points);
+                batch.look_up(&kernel, fours);
+                sums.add(a, &batch, fours);
+                let part = from..from + near.len();
+                rows.weights[part.clone()].copy_from_slice(&batch.weights.as_flattened()[..near.len()]);
+                rows.curvatures[part].copy_from_slice(&batch.curvatures[..near.len()]);
+                from += near.len();
             }
-            let inverse_moment =
-                MomentMatrix::of_columns(&moment).inverse_above(MIN_SPREAD).unwrap_or_default();
-            let count = count as u32;
-            rows.around[k] =
-                NearbyMotion { count, inverse_moment, first_moment: first_moment.xyz(), weight_sum, filled };
+            rows.around[k] = sums.of(a, count, itself * own.velocity.0[3]);
+        }
+    }
+}
+
+/// The records of a batch of neighbours, four in a vector, and the kernel at them.
+struct Batch {
+    arms: Arms,
+    /// V_j, m3.
+    present: [Lanes4; FOURS],
+    weights: [[f64; 4]; FOURS],
+    values: [[f64; 4]; FOURS],
+    curvatures: [f32; BATCH],
+}
+
+impl Batch {
+    const NONE: Self = Self {
+        arms: Arms::NONE,
+        present: [Lanes4::ZERO; FOURS],
+        weights: [[0.0; 4]; FOURS],
+        values: [[0.0; 4]; FOURS],
+        curvatures: [0.0; BATCH],
+    };
+
+    /// Gathers the records of at most a batch of neighbours. Returns the number of vectors.
+    #[inline(always)]
+    fn gather<A: FourLanes>(
+        &mut self,
+        a: A,
+        center: &Center,
+        near: &[u32],
+        points: &[EulerianParticle],
+    ) -> usize {
+        let (fours, rest) = near.as_chunks::<4>();
+        for n in 0..fours.len().min(FOURS) {
+            self.put(a, n, center, records(&fours[n], points));
+        }
+        if rest.is_empty() {
+            return fours.len();
+        }
+        self.put(a, fours.len(), center, records(&filled_up(rest), points));
+        self.arms.clear_from(rest.len(), fours.len(), center);
+        fours.len() + 1
+    }
+
+    #[inline(always)]
+    fn put<A: FourLanes>(&mut self, a: A, n: usize, center: &Center, of: [&EulerianParticle; 4]) {
+        self.arms.put(a, n, center, of);
+        let [_, _, _, present] = a.transpose(velocities(of));
+        self.present[n] = present;
+    }
+
+    /// Evaluates the kernel. By number: a loop over contiguous rows is computed several at once.
+    #[inline(always)]
+    fn look_up<K: KernelProfile>(&mut self, kernel: &ScaledKernel<K>, fours: usize) {
+        let distances = self.arms.distances(fours);
+        let number = distances.len();
+        let weights = &mut self.weights.as_flattened_mut()[..number];
+        let values = &mut self.values.as_flattened_mut()[..number];
+        let curvatures = &mut self.curvatures[..number];
+        for n in 0..number {
+            weights[n] = kernel.pair_weight(distances[n]);
+            values[n] = kernel.w(distances[n]);
+            curvatures[n] = kernel.d2w_dr2(distances[n]) as f32;
+        }
+    }
+}
+
+/// The sums of [`NearbyMotion`] in lanes.
+struct NearbySums {
+    moment: MomentSums,
+    first_moment: [Lanes4; 3],
+    weight: Lanes4,
+    filled: Lanes4,
+}
+
+impl NearbySums {
+    const ZERO: Self = Self {
+        moment: MomentSums::ZERO,
+        first_moment: [Lanes4::ZERO; 3],
+        weight: Lanes4::ZERO,
+        filled: Lanes4::ZERO,
+    };
+
+    #[inline(always)]
+    fn add<A: FourLanes>(&mut self, a: A, batch: &Batch, fours: usize) {
+        for n in 0..fours.min(FOURS) {
+            let weight = a.mul(batch.arms.volume[n], Lanes4(batch.weights[n]));
+            let arm = &batch.arms.arm[n];
+            let weighted = weighted(a, weight, arm);
+            self.moment.add(a, arm, &weighted);
+            for axis in 0..A::AXES {
+                self.first_moment[axis] = a.add(self.first_moment[axis], weighted[axis]);
+            }
+            self.weight = a.add(self.weight, weight);
+            self.filled = a.mul_add(batch.present[n], Lanes4(batch.values[n]), self.filled);
+        }
+    }
+
+    /// The results for a particle with `count` neighbours that fills `itself` alone.
+    #[inline(always)]
+    fn of<A: FourLanes>(&self, a: A, count: usize, itself: f64) -> NearbyMotion {
+        let (moment, filled) = self.moment.sum(a, self.filled);
+        let [x, y, z] = self.first_moment;
+        let first = a.sums([x, y, z, self.weight]);
+        NearbyMotion {
+            count: count as u32,
+            inverse_moment: moment.inverse_above(MIN_SPREAD).unwrap_or_default(),
+            first_moment: first.xyz(),
+            weight_sum: first.0[3],
+            filled: itself + filled,
         }
     }
 }

@@ -11,7 +11,7 @@ use super::dilatation::DilatationRate;
 use super::divergence::Divergence;
 use super::force::EulerianForce;
 use super::lists::{EulerianBody, EulerianLists};
-use super::near::{ComputePairs, EulerianNeighbors, NearbyMotion, NeighborRows};
+use super::near::{ComputePairs, EulerianNeighbors, NearbyMotion};
 use super::pairs::EulerianPairs;
 use super::rates::{RATES, VelocityGradients};
 use super::rows::{EulerianKernel, EulerianRows, PointColumns};
@@ -263,14 +263,7 @@ fn set_up(
 fn look_at_reference(packed: &mut EulerianRows, setup: &mut Setup<'_>) -> Result<(), SetupError> {
     let EulerianRows { lists, kernels, points, near, plane, .. } = packed;
     for (body, of) in lists.bodies.iter().zip(kernels) {
-        let (rows, of_lists) = (body.rows.clone(), lists.of_rows(body.rows.clone()));
-        let mut rows = NeighborRows {
-            offsets: &lists.pairs.offsets()[rows.start..=rows.end],
-            neighbors: &mut near.neighbors[of_lists.clone()],
-            weights: &mut near.weights[of_lists.clone()],
-            curvatures: &mut near.curvatures[of_lists],
-            around: &mut near.around[rows],
-        };
+        let mut rows = near.of_rows(&lists.pairs, body.rows.clone());
         let (kernel, support, first) = (of.kernel, body.support, body.rows.start);
         let (lists, plane) = (lists.pairs.indices(), *plane);
         kernel.dispatch(ComputePairs { kernel, support, lists, points, first, plane, rows: &mut rows });

@@ -7,14 +7,15 @@
 use glam::{DMat3, DVec3};
 
 use super::dilatation::{DilatationRate, gradient};
-use super::near::MIN_SPREAD;
+use super::near::{MIN_SPREAD, NeighborRows};
 use super::particle::EulerianParticle;
 use super::rows::{EulerianRows, PointColumns};
 use super::start;
-use super::within::{CHUNK, Within};
-use crate::correction::MomentMatrix;
+use super::within::{Arms, BATCH, Center, FOURS, MomentSums, filled_up, records, velocities, weighted};
 use crate::kernels::{Kernel, KernelProfile, KernelVisitor, ProfiledKernel, ScaledKernel};
-use crate::parallel::{FourLanes, Lanes4, PlaneOrSpace, for_each_own_block, run_hot_in, share_rows};
+use crate::parallel::{
+    FourLanes, HotLoop, Lanes4, for_each_own_block, run_hot_on, share_rows, split_by_rows,
+};
 use crate::schedule::{Run, Step, StepError};
 use crate::solids::fit;
 use crate::world::{
@@ -57,7 +58,7 @@ impl Run for VelocityGradients {
             packed.lists.leave_out_elsewhere(place, start, &deformation);
             let dilatation =
                 if view.has::<DilatationRate>() { Some(view.read::<DilatationRate>()?) } else { None };
-            advance(&packed, &mut deformation, dilatation.as_deref(), step.clock.dt);
+            advance(&mut packed, &mut deformation, dilatation.as_deref(), step.clock.dt);
         }
         packed.lists.leave_out_elsewhere(place, start, &deformation);
         Ok(())
@@ -79,50 +80,59 @@ fn update_lists(
 
 /// Advances F of all bodies by a step of `dt`, s.
 fn advance(
-    packed: &EulerianRows,
+    packed: &mut EulerianRows,
     deformation: &mut [DeformationGradient],
     dilatation: Option<&[DilatationRate]>,
     dt: f64,
 ) {
-    let EulerianRows { lists, kernels, points, plane, .. } = packed;
+    let EulerianRows { lists, kernels, points, near, plane, .. } = packed;
     for (body, of) in lists.bodies.iter().zip(kernels) {
         let rows = body.rows.clone();
         let own: &mut [DMat3] = bytemuck::cast_slice_mut(&mut deformation[rows.clone()]);
-        for_each_own_block(&mut *own, &mut Vec::new(), &|first, deformation: &mut [DMat3]| {
+        let advanced =
+            AdvancedRows { deformation: &mut *own, near: near.of_rows(&lists.pairs, rows.clone()) };
+        for_each_own_block(advanced, &mut Vec::new(), &|first, block: AdvancedRows<'_>| {
             let first = rows.start + first;
-            let offsets = &lists.pairs.offsets()[first..=first + deformation.len()];
             let (kernel, support) = (of.kernel, body.support);
-            let (neighbors, plane) = (lists.pairs.indices(), *plane);
+            let (lists, points, plane) = (lists.pairs.indices(), &points[..], *plane);
             kernel.dispatch(Advance {
                 kernel,
                 support,
-                offsets,
-                neighbors,
+                lists,
                 points,
                 first,
                 plane,
                 dilatation,
                 dt,
-                deformation,
+                rows: block,
             });
         });
         share_rows(own);
     }
 }
 
+/// Packed rows that the pass writes, split by rows of one body.
+struct AdvancedRows<'a> {
+    deformation: &'a mut [DMat3],
+    /// Scratch memory for the neighbours at mid-step.
+    near: NeighborRows<'a>,
+}
+
+split_by_rows!(AdvancedRows { deformation, near });
+
 /// Advances F of a block.
 struct Advance<'a> {
     kernel: Kernel,
     support: f64,
-    offsets: &'a [usize],
-    neighbors: &'a [u32],
+    /// Lists of all rows.
+    lists: &'a [u32],
     points: &'a [EulerianParticle],
     first: usize,
     plane: bool,
     /// Of all rows of the phase, if plugins change volumes.
     dilatation: Option<&'a [DilatationRate]>,
     dt: f64,
-    deformation: &'a mut [DMat3],
+    rows: AdvancedRows<'a>,
 }
 
 impl KernelVisitor for Advance<'_> {
@@ -130,7 +140,7 @@ impl KernelVisitor for Advance<'_> {
 
     fn visit<K: KernelProfile>(self, kernel: ProfiledKernel<K>) {
         let kernel = kernel.scaled(self.kernel.smoothing_length(self.support));
-        run_hot_in(self.plane, AdvanceLoop { kernel, of: self });
+        run_hot_on(self.plane, AdvanceLoop { kernel, of: self });
     }
 }
 
@@ -139,49 +149,143 @@ struct AdvanceLoop<'a, K: KernelProfile> {
     of: Advance<'a>,
 }
 
-impl<K: KernelProfile> PlaneOrSpace for AdvanceLoop<'_, K> {
+impl<K: KernelProfile> HotLoop for AdvanceLoop<'_, K> {
+    type Output = ();
+
     #[inline(always)]
-    fn run<A: FourLanes, const D: usize>(self, a: A) {
-        let Self {
-            kernel,
-            of: Advance { support, offsets, neighbors, points, first, dilatation, dt, deformation, .. },
-        } = self;
-        let limit = support * support;
-        let (mut near, mut weights) = ([0_u32; CHUNK], [0.0; CHUNK]);
+    fn run<A: FourLanes>(self, a: A) {
+        let Self { kernel, of: Advance { support, lists, points, first, dilatation, dt, rows, .. } } = self;
+        let AdvancedRows { deformation, near: NeighborRows { offsets, neighbors, .. } } = rows;
+        let begin = offsets[0];
+        let mut batch = Batch::NONE;
         for (k, f) in deformation.iter_mut().enumerate() {
             let own = points[first + k];
             if own.place.0[3] <= 0.0 {
                 continue;
             }
-            let (mut moment, mut spread) = ([Lanes4::ZERO; D], [Lanes4::ZERO; D]);
-            for list in neighbors[offsets[k]..offsets[k + 1]].chunks(CHUNK) {
-                let within = Within { neighbors: &mut near, squares: &mut weights };
-                let count = within.find(a, list, (own.place, limit), points);
-                for weight in &mut weights[..count] {
-                    *weight = kernel.pair_weight(weight.sqrt());
-                }
-                for n in 0..count {
-                    let other = &points[near[n] as usize];
-                    let arm = a.sub(other.place, own.place);
-                    let weighted = a.scale(other.place.0[3] * weights[n], arm);
-                    let passing = a.sub(other.velocity, own.velocity);
-                    for axis in 0..D {
-                        moment[axis] = a.scale_add(arm.0[axis], weighted, moment[axis]);
-                        spread[axis] = a.scale_add(weighted.0[axis], passing, spread[axis]);
-                    }
-                }
+            let near = &mut neighbors[offsets[k] - begin..offsets[k + 1] - begin];
+            let center = Center::new(own.place, support);
+            let count = center.find(a, &lists[offsets[k]..offsets[k + 1]], points, near);
+            let mut sums = RateSums::ZERO;
+            for near in near[..count].chunks(BATCH) {
+                let fours = batch.gather(a, &center, (near, own.velocity), points);
+                batch.look_up(&kernel, fours);
+                sums.add(a, &mut batch, fours);
             }
-            let Some(inverse) = MomentMatrix::of_columns(&moment).inverse_above(MIN_SPREAD) else {
+            let Some(inverse) = sums.moment.sum(a, Lanes4::ZERO).0.inverse_above(MIN_SPREAD) else {
                 continue;
             };
-            let l = fit::<A, D>(a, &spread, &inverse);
+            let l = fit::<A, 3>(a, &sums.spread(a), &inverse);
             let mut rate = DMat3::from_cols(l[0].xyz(), l[1].xyz(), l[2].xyz());
             if let Some(dilatation) = dilatation {
-                rate += gradient(dilatation[first + k].0, D == 2);
+                rate += gradient(dilatation[first + k].0, A::AXES == 2);
             }
             let half = rate * (0.5 * dt);
             *f = cayley(&half) * *f;
         }
+    }
+}
+
+/// The records of a batch of neighbours, four in a vector, and the pair weights.
+struct Batch {
+    arms: Arms,
+    /// v_ij, m/s.
+    passing: [[Lanes4; 3]; FOURS],
+    weights: [[f64; 4]; FOURS],
+}
+
+impl Batch {
+    const NONE: Self =
+        Self { arms: Arms::NONE, passing: [[Lanes4::ZERO; 3]; FOURS], weights: [[0.0; 4]; FOURS] };
+
+    /// Gathers the records of at most a batch of neighbours of a particle by its velocity. Returns the number
+    /// of vectors.
+    #[inline(always)]
+    fn gather<A: FourLanes>(
+        &mut self,
+        a: A,
+        center: &Center,
+        (near, own): (&[u32], Lanes4),
+        points: &[EulerianParticle],
+    ) -> usize {
+        let (fours, rest) = near.as_chunks::<4>();
+        let own = [Lanes4::splat(own.0[0]), Lanes4::splat(own.0[1]), Lanes4::splat(own.0[2])];
+        for n in 0..fours.len().min(FOURS) {
+            self.put(a, n, center, &own, records(&fours[n], points));
+        }
+        if rest.is_empty() {
+            return fours.len();
+        }
+        self.put(a, fours.len(), center, &own, records(&filled_up(rest), points));
+        self.arms.clear_from(rest.len(), fours.len(), center);
+        fours.len() + 1
+    }
+
+    #[inline(always)]
+    fn put<A: FourLanes>(
+        &mut self,
+        a: A,
+        n: usize,
+        center: &Center,
+        own: &[Lanes4; 3],
+        of: [&EulerianParticle; 4],
+    ) {
+        self.arms.put(a, n, center, of);
+        let [x, y, z, _] = a.transpose(velocities(of));
+        let z = if A::AXES == 3 { a.sub(z, own[2]) } else { Lanes4::ZERO };
+        self.passing[n] = [a.sub(x, own[0]), a.sub(y, own[1]), z];
+    }
+
+    /// Evaluates the kernel. By number: a loop over contiguous rows is computed several at once.
+    #[inline(always)]
+    fn look_up<K: KernelProfile>(&mut self, kernel: &ScaledKernel<K>, fours: usize) {
+        let distances = self.arms.distances(fours);
+        let weights = &mut self.weights.as_flattened_mut()[..distances.len()];
+        for n in 0..distances.len() {
+            weights[n] = kernel.pair_weight(distances[n]);
+        }
+    }
+}
+
+/// Sums over the neighbours of a particle in lanes.
+struct RateSums {
+    moment: MomentSums,
+    /// `sum_j V_0,j w_ij v_ij (x) x_ij`, by columns.
+    spread: [[Lanes4; 3]; 3],
+}
+
+impl RateSums {
+    const ZERO: Self = Self { moment: MomentSums::ZERO, spread: [[Lanes4::ZERO; 3]; 3] };
+
+    /// Adds a batch, in two loops whose sums stay in registers.
+    #[inline(always)]
+    fn add<A: FourLanes>(&mut self, a: A, batch: &mut Batch, fours: usize) {
+        let fours = fours.min(FOURS);
+        for n in 0..fours {
+            let arm = &mut batch.arms.arm[n];
+            let weighted = weighted(a, a.mul(batch.arms.volume[n], Lanes4(batch.weights[n])), arm);
+            self.moment.add(a, arm, &weighted);
+            *arm = weighted;
+        }
+        for n in 0..fours {
+            let (weighted, passing) = (&batch.arms.arm[n], &batch.passing[n]);
+            for column in 0..A::AXES {
+                for axis in 0..A::AXES {
+                    self.spread[column][axis] =
+                        a.mul_add(passing[axis], weighted[column], self.spread[column][axis]);
+                }
+            }
+        }
+    }
+
+    /// The columns of the second sum.
+    #[inline(always)]
+    fn spread<A: FourLanes>(&self, a: A) -> [Lanes4; 3] {
+        let mut columns = [Lanes4::ZERO; 3];
+        for (column, [x, y, z]) in columns.iter_mut().zip(self.spread) {
+            *column = a.sums([x, y, z, Lanes4::ZERO]);
+        }
+        columns
     }
 }
 

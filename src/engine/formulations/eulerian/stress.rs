@@ -153,15 +153,8 @@ impl Stress {
         let BodyPass { body: k, ref rows, part, .. } = of_body;
         let EulerianRows { lists, kernels, points, near, deformation, carried, stresses, plane, .. } = packed;
         let (body, kernel) = (&lists.bodies[k], kernels[k]);
-        let of_lists = lists.of_rows(rows.clone());
         let own = OwnRows {
-            near: NeighborRows {
-                offsets: &lists.pairs.offsets()[rows.start..=rows.end],
-                neighbors: &mut near.neighbors[of_lists.clone()],
-                weights: &mut near.weights[of_lists.clone()],
-                curvatures: &mut near.curvatures[of_lists],
-                around: &mut near.around[rows.clone()],
-            },
+            near: near.of_rows(&lists.pairs, rows.clone()),
             deformation: &mut deformation[rows.clone()],
             carried: &mut carried[rows.clone()],
             stresses: &mut stresses[rows.clone()],
