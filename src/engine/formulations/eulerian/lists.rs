@@ -11,7 +11,7 @@ use crate::world::BodyId;
 
 /// Skin over the support radius before motion is known.
 const FIRST_SKIN: f64 = 0.1;
-/// Bounds of the skin over the support radius.
+/// Bounds of the skin over the support radius; the upper one gives way to what a step needs.
 const SKINS: Range<f64> = 0.02..0.2;
 
 /// A body of the lists.
@@ -39,7 +39,7 @@ pub(super) struct EulerianLists {
     pub uncut: NeighborList,
     /// Places that the lists were built from, m.
     built_from: Vec<DVec3>,
-    skin: Skin,
+    skin: ListSkin,
     search: NeighborSearch,
     places: Vec<DVec3>,
 }
@@ -50,22 +50,37 @@ impl EulerianLists {
         Self { bodies, ..Self::default() }
     }
 
-    /// Rebuilds the lists if a pair that is not in them may have come within the support; says whether it
-    /// did.
+    /// Rebuilds the lists if a pair that is not in them may have come within the support, at the end of the
+    /// step or in the middle of it; says whether it did. `velocity`, m/s, has moved the particles for `dt`, s.
     ///
     /// # Errors
     /// The body whose places have no neighbours that could be found.
-    pub fn update(&mut self, position: &[DVec3]) -> Result<bool, (BodyId, NeighborError)> {
+    pub fn update(
+        &mut self,
+        position: &[DVec3],
+        velocity: &[DVec3],
+        dt: f64,
+    ) -> Result<bool, (BodyId, NeighborError)> {
         let is_first = self.built_from.len() != position.len();
+        let Self { skin, built_from, bodies, .. } = self;
         let is_stale = is_first
-            || self.bodies.iter().any(|body| {
+            || bodies.iter().any(|body| {
                 let rows = body.rows.clone();
-                body.has_moved(self.skin.width, &self.built_from[rows.clone()], &position[rows])
+                let moved =
+                    body.farthest((&built_from[rows.clone()], &position[rows]), |before, now| now - before);
+                // What is not a number is far, too.
+                moved.is_nan() || moved > 0.5 * skin.width * body.support
             });
-        if is_stale && !is_first {
-            self.skin.adapt();
-        }
         if is_stale {
+            if !is_first {
+                skin.adapt();
+            }
+            // Between builds the middle of a step is covered by its ends.
+            for body in bodies.iter() {
+                let velocity = &velocity[body.rows.clone()];
+                let moved = body.farthest((velocity, velocity), |v, _| v * dt);
+                skin.width = skin.width.max(moved / body.support);
+            }
             self.build(position)?;
         }
         self.skin.steps += 1;
@@ -104,51 +119,51 @@ impl EulerianLists {
 }
 
 /// The skin of the lists and their age. Results do not depend on it.
-struct Skin {
+struct ListSkin {
     /// Over the support radius.
     width: f64,
     /// Steps since the last build.
     steps: u64,
 }
 
-impl Default for Skin {
+impl Default for ListSkin {
     fn default() -> Self {
         Self { width: FIRST_SKIN, steps: 0 }
     }
 }
 
-impl Skin {
-    /// Chooses the skin of the next lists by how long the last ones were valid. Looking at the particles in
-    /// the skin takes half its width of the time of a step, in two passes, and a build 0.6 of it (measured in
-    /// space): with a motion of `r` support radii per step the sum `0.5 s + 0.6 r / s` is least near the root
-    /// of r.
+impl ListSkin {
+    /// Chooses the skin s of the next lists by how long the last ones were valid. Of the instructions of a
+    /// step, looking at the particles in the skin takes a share of 0.45 s, and a build as many as 0.8 steps
+    /// (measured in space): with a motion of r support radii per step the sum `0.45 s + 0.8 r / s` is to be
+    /// least.
     fn adapt(&mut self) {
         let motion = self.width / self.steps.max(1) as f64;
-        *self = Self { width: motion.sqrt().clamp(SKINS.start, SKINS.end), steps: 0 };
+        let width = (0.8 / 0.45 * motion).sqrt();
+        *self = Self { width: width.clamp(SKINS.start, SKINS.end), steps: 0 };
     }
 }
 
 impl EulerianBody {
-    /// Whether a particle has moved by more than half the skin. A body that flies takes its lists along; at a
-    /// symmetry plane it meets its image, which goes the other way.
-    fn has_moved(&self, skin: f64, before: &[DVec3], now: &[DVec3]) -> bool {
+    /// Length of the longest way of a particle. A body that flies takes its lists along; at a symmetry plane
+    /// it meets its image, which goes the other way.
+    fn farthest(&self, rows: (&[DVec3], &[DVec3]), way: impl Fn(DVec3, DVec3) -> DVec3 + Sync) -> f64 {
         let is_mirrored = self.repeats.iter().any(|repeat| matches!(repeat, Repeat::Mirror { .. }));
         type Rows<'a> = (&'a [DVec3], &'a [DVec3]);
         let along = if is_mirrored {
             DVec3::ZERO
         } else {
-            let all: Extent = sum_over_blocks((before, now), &|_, (before, now): Rows<'_>| {
-                let moved = before.iter().zip(now).map(|(before, now)| *now - *before);
-                moved.fold(Extent::default(), |all, u| Extent(all.0.min(u), all.1.max(u)))
+            let all: Extent = sum_over_blocks(rows, &|_, (before, now): Rows<'_>| {
+                let ways = before.iter().zip(now).map(|(before, now)| way(*before, *now));
+                ways.fold(Extent::default(), |all, u| Extent(all.0.min(u), all.1.max(u)))
             });
             0.5 * (all.0 + all.1)
         };
-        let farthest: Maximum = sum_over_blocks((before, now), &|_, (before, now): Rows<'_>| {
-            Maximum::of(before.iter().zip(now).map(|(before, now)| (*now - *before - along).length_squared()))
+        let farthest: Maximum = sum_over_blocks(rows, &|_, (before, now): Rows<'_>| {
+            let ways = before.iter().zip(now).map(|(before, now)| way(*before, *now));
+            Maximum::of(ways.map(|u| (u - along).length_squared()))
         });
-        let limit = 0.5 * skin * self.support;
-        // What is not a number is far, too.
-        farthest.0.is_nan() || farthest.0 > limit * limit
+        farthest.0.sqrt()
     }
 
     /// Symmetry planes and periods of the body at its present position, and the distance from a side within
@@ -214,7 +229,7 @@ mod tests {
 
     #[test]
     fn no_pair_within_the_support_is_missed_between_builds() {
-        let (mut position, mut lists) = (cloud(), lists(Vec::new()));
+        let (mut position, mut lists, still) = (cloud(), lists(Vec::new()), [DVec3::ZERO; 200]);
         let mut builds = 0;
         for step in 0..60 {
             for (k, x) in position.iter_mut().enumerate() {
@@ -224,7 +239,7 @@ mod tests {
                     0.0,
                 );
             }
-            builds += usize::from(lists.update(&position).expect("lists"));
+            builds += usize::from(lists.update(&position, &still, 0.0).expect("lists"));
             for i in 0..position.len() {
                 let row = lists.pairs.row(i);
                 assert!(row.is_sorted() && close(&position, i).iter().all(|j| row.contains(j)), "row {i}");
@@ -236,26 +251,48 @@ mod tests {
 
     #[test]
     fn a_body_that_comes_near_a_symmetry_plane_meets_its_image() {
-        let (mut position, mut lists) = (cloud(), lists(vec![Repeat::Mirror { axis: 0, at: -4.0 }]));
-        lists.update(&position).expect("lists");
+        let mut lists = lists(vec![Repeat::Mirror { axis: 0, at: -4.0 }]);
+        let (mut position, still) = (cloud(), [DVec3::ZERO; 200]);
+        lists.update(&position, &still, 0.0).expect("lists");
         assert!(lists.ghosts.is_empty());
         position.iter_mut().for_each(|x| x.x -= 3.5);
-        assert!(lists.update(&position).expect("lists"));
+        assert!(lists.update(&position, &still, 0.0).expect("lists"));
         let ghosts = lists.pairs.row(0).iter().filter(|&&j| j >= 200).count();
         assert!(ghosts > 0 && lists.ghosts.len() >= 30, "{ghosts} of {}", lists.ghosts.len());
     }
 
     #[test]
     fn the_skin_costs_the_least_for_the_motion_that_it_has_seen() {
-        for motion in [0.0008, 0.003, 0.01, 0.03] {
-            let cost = |width: f64| 0.5 * width + 0.6 * motion / width;
-            let mut skin = Skin::default();
+        for motion in [0.0004, 0.002, 0.007, 0.02] {
+            let cost = |width: f64| 0.45 * width + 0.8 * motion / width;
+            let mut skin = ListSkin::default();
             for _ in 0..20 {
                 skin.steps = (skin.width / motion).ceil() as u64;
                 skin.adapt();
             }
             let least = (4..=40).map(|k| cost(0.005 * f64::from(k))).fold(f64::MAX, f64::min);
             assert!(cost(skin.width) < 1.05 * least, "{motion}: {} {least}", skin.width);
+        }
+    }
+
+    #[test]
+    fn a_pair_that_was_close_in_the_middle_of_a_fast_step_is_listed() {
+        let (mut position, mut lists, mut velocity) = (cloud(), lists(Vec::new()), [DVec3::ZERO; 200]);
+        // At rest for long the skin is narrow.
+        for step in 0..4000 {
+            position[7].y = 0.3 * f64::from(step % 2000) / 2000.0;
+            lists.update(&position, &velocity, 0.0).expect("lists");
+        }
+        assert!(lists.skin.width < 0.03, "{}", lists.skin.width);
+        let middle = position.clone();
+        for (k, x) in position.iter_mut().enumerate() {
+            velocity[k].x = if k % 2 == 0 { 0.5 } else { -0.5 };
+            *x += 0.5 * velocity[k];
+        }
+        assert!(lists.update(&position, &velocity, 1.0).expect("lists"));
+        for i in 0..position.len() {
+            let row = lists.pairs.row(i);
+            assert!(close(&middle, i).iter().all(|j| row.contains(j)), "row {i}");
         }
     }
 }

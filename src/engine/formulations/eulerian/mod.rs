@@ -26,6 +26,7 @@ mod dilatation;
 mod divergence;
 mod elsewhere;
 mod force;
+mod gathered;
 mod lists;
 mod near;
 mod pairs;

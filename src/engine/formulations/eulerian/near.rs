@@ -3,8 +3,9 @@
 
 use std::ops::Range;
 
+use super::gathered::{Arms, BATCH, Batch, FOURS, MomentSums, velocities, weighted};
 use super::particle::EulerianParticle;
-use super::within::{Arms, BATCH, Center, FOURS, MomentSums, filled_up, records, velocities, weighted};
+use super::within::Center;
 use crate::kernels::{Kernel, KernelProfile, KernelVisitor, ProfiledKernel, ScaledKernel};
 use crate::linalg::Sym3;
 use crate::neighbors::NeighborList;
@@ -132,7 +133,7 @@ impl<K: KernelProfile> HotLoop for PairLoop<'_, '_, K> {
         let Self { kernel, look: ComputePairs { support, lists, points, first, rows, .. } } = self;
         let itself = kernel.w(0.0);
         let begin = rows.offsets[0];
-        let mut batch = Batch::NONE;
+        let mut batch = NearBatch::NONE;
         for k in 0..rows.around.len() {
             let own = points[first + k];
             let list = if own.place.0[3] > 0.0 { rows.offsets[k]..rows.offsets[k + 1] } else { 0..0 };
@@ -156,7 +157,7 @@ impl<K: KernelProfile> HotLoop for PairLoop<'_, '_, K> {
 }
 
 /// The records of a batch of neighbours, four in a vector, and the kernel at them.
-struct Batch {
+struct NearBatch {
     arms: Arms,
     /// V_j, m3.
     present: [Lanes4; FOURS],
@@ -165,7 +166,20 @@ struct Batch {
     curvatures: [f32; BATCH],
 }
 
-impl Batch {
+impl Batch for NearBatch {
+    #[inline(always)]
+    fn arms(&mut self) -> &mut Arms {
+        &mut self.arms
+    }
+
+    #[inline(always)]
+    fn put<A: FourLanes>(&mut self, a: A, n: usize, of: [&EulerianParticle; 4]) {
+        let [_, _, _, present] = a.transpose(velocities(of));
+        self.present[n] = present;
+    }
+}
+
+impl NearBatch {
     const NONE: Self = Self {
         arms: Arms::NONE,
         present: [Lanes4::ZERO; FOURS],
@@ -173,34 +187,6 @@ impl Batch {
         values: [[0.0; 4]; FOURS],
         curvatures: [0.0; BATCH],
     };
-
-    /// Gathers the records of at most a batch of neighbours. Returns the number of vectors.
-    #[inline(always)]
-    fn gather<A: FourLanes>(
-        &mut self,
-        a: A,
-        center: &Center,
-        near: &[u32],
-        points: &[EulerianParticle],
-    ) -> usize {
-        let (fours, rest) = near.as_chunks::<4>();
-        for n in 0..fours.len().min(FOURS) {
-            self.put(a, n, center, records(&fours[n], points));
-        }
-        if rest.is_empty() {
-            return fours.len();
-        }
-        self.put(a, fours.len(), center, records(&filled_up(rest), points));
-        self.arms.clear_from(rest.len(), fours.len(), center);
-        fours.len() + 1
-    }
-
-    #[inline(always)]
-    fn put<A: FourLanes>(&mut self, a: A, n: usize, center: &Center, of: [&EulerianParticle; 4]) {
-        self.arms.put(a, n, center, of);
-        let [_, _, _, present] = a.transpose(velocities(of));
-        self.present[n] = present;
-    }
 
     /// Evaluates the kernel. By number: a loop over contiguous rows is computed several at once.
     #[inline(always)]
@@ -235,8 +221,8 @@ impl NearbySums {
     };
 
     #[inline(always)]
-    fn add<A: FourLanes>(&mut self, a: A, batch: &Batch, fours: usize) {
-        for n in 0..fours.min(FOURS) {
+    fn add<A: FourLanes>(&mut self, a: A, batch: &NearBatch, fours: usize) {
+        for n in 0..fours {
             let weight = a.mul(batch.arms.volume[n], Lanes4(batch.weights[n]));
             let arm = &batch.arms.arm[n];
             let weighted = weighted(a, weight, arm);

@@ -1,6 +1,6 @@
 //! The formulation as scenes name it: its parameters, their check, its columns and systems.
 
-use glam::DMat3;
+use glam::{DMat3, DVec3};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -239,15 +239,16 @@ fn set_up(
         inside: Vec::new(),
         plane: setup.world.dimension() == Dimension::Two,
     };
-    packed.update_lists(bytemuck::cast_slice(&reference), bytemuck::cast_slice(&reference)).map_err(
-        |(body, error)| {
-            let help = "use a larger `support`, or more particles across the body";
-            SetupError::parameter(format!("bodies[{}].formulation", body.0), error.to_string(), help)
-        },
-    )?;
+    let velocity = view.read::<Velocity>().map_err(missing)?;
+    let (place, still): (&[DVec3], _) =
+        (bytemuck::cast_slice(&reference), (bytemuck::cast_slice(&velocity), 0.0));
+    packed.update_lists(place, place, still).map_err(|(body, error)| {
+        let help = "use a larger `support`, or more particles across the body";
+        SetupError::parameter(format!("bodies[{}].formulation", body.0), error.to_string(), help)
+    })?;
     let columns = PointColumns {
         position: bytemuck::cast_slice(&reference),
-        velocity: &view.read::<Velocity>().map_err(missing)?,
+        velocity: &velocity,
         volume: &view.read::<ReferenceVolume>().map_err(missing)?,
         deformation: &view.read::<DeformationGradient>().map_err(missing)?,
     };

@@ -7,11 +7,12 @@
 use glam::{DMat3, DVec3};
 
 use super::dilatation::{DilatationRate, gradient};
+use super::gathered::{Arms, BATCH, Batch, FOURS, MomentSums, velocities, weighted};
 use super::near::{MIN_SPREAD, NeighborRows};
 use super::particle::EulerianParticle;
 use super::rows::{EulerianRows, PointColumns};
 use super::start;
-use super::within::{Arms, BATCH, Center, FOURS, MomentSums, filled_up, records, velocities, weighted};
+use super::within::Center;
 use crate::kernels::{Kernel, KernelProfile, KernelVisitor, ProfiledKernel, ScaledKernel};
 use crate::parallel::{
     FourLanes, HotLoop, Lanes4, for_each_own_block, run_hot_on, share_rows, split_by_rows,
@@ -43,9 +44,11 @@ impl Run for VelocityGradients {
             let volume = view.read_near::<ReferenceVolume>()?;
             start::fit_gradients(&packed, start, place, bytemuck::cast_slice(&volume), &mut deformation);
         }
-        update_lists(&mut packed, place, start, step.world)?;
+        let velocity = view.read_near::<Velocity>()?;
+        let motion: (&[DVec3], f64) = (bytemuck::cast_slice(&velocity), step.clock.dt);
+        update_lists(&mut packed, place, start, motion, step.world)?;
         if step.clock.dt > 0.0 {
-            let (velocity, volume) = (view.read_near::<Velocity>()?, view.read_near::<ReferenceVolume>()?);
+            let volume = view.read_near::<ReferenceVolume>()?;
             let columns = PointColumns {
                 position: &position,
                 velocity: &velocity,
@@ -70,9 +73,10 @@ fn update_lists(
     packed: &mut EulerianRows,
     position: &[DVec3],
     reference: &[DVec3],
+    motion: (&[DVec3], f64),
     world: &World,
 ) -> Result<(), StepError> {
-    packed.update_lists(position, reference).map_err(|(body, error)| {
+    packed.update_lists(position, reference, motion).map_err(|(body, error)| {
         let message = format!("neighbours of body `{}` cannot be listed: {error}", world.body(body).name);
         StepError::System { system: RATES.to_owned(), message }
     })
@@ -157,7 +161,7 @@ impl<K: KernelProfile> HotLoop for AdvanceLoop<'_, K> {
         let Self { kernel, of: Advance { support, lists, points, first, dilatation, dt, rows, .. } } = self;
         let AdvancedRows { deformation, near: NeighborRows { offsets, neighbors, .. } } = rows;
         let begin = offsets[0];
-        let mut batch = Batch::NONE;
+        let mut batch = RateBatch::NONE;
         for (k, f) in deformation.iter_mut().enumerate() {
             let own = points[first + k];
             if own.place.0[3] <= 0.0 {
@@ -166,9 +170,11 @@ impl<K: KernelProfile> HotLoop for AdvanceLoop<'_, K> {
             let near = &mut neighbors[offsets[k] - begin..offsets[k + 1] - begin];
             let center = Center::new(own.place, support);
             let count = center.find(a, &lists[offsets[k]..offsets[k + 1]], points, near);
-            let mut sums = RateSums::ZERO;
+            let [x, y, z, _] = own.velocity.0;
+            batch.own = [Lanes4::splat(x), Lanes4::splat(y), Lanes4::splat(z)];
+            let mut sums = GradientSums::ZERO;
             for near in near[..count].chunks(BATCH) {
-                let fours = batch.gather(a, &center, (near, own.velocity), points);
+                let fours = batch.gather(a, &center, near, points);
                 batch.look_up(&kernel, fours);
                 sums.add(a, &mut batch, fours);
             }
@@ -187,54 +193,36 @@ impl<K: KernelProfile> HotLoop for AdvanceLoop<'_, K> {
 }
 
 /// The records of a batch of neighbours, four in a vector, and the pair weights.
-struct Batch {
+struct RateBatch {
     arms: Arms,
+    /// v_i in all lanes, m/s.
+    own: [Lanes4; 3],
     /// v_ij, m/s.
     passing: [[Lanes4; 3]; FOURS],
     weights: [[f64; 4]; FOURS],
 }
 
-impl Batch {
-    const NONE: Self =
-        Self { arms: Arms::NONE, passing: [[Lanes4::ZERO; 3]; FOURS], weights: [[0.0; 4]; FOURS] };
-
-    /// Gathers the records of at most a batch of neighbours of a particle by its velocity. Returns the number
-    /// of vectors.
+impl Batch for RateBatch {
     #[inline(always)]
-    fn gather<A: FourLanes>(
-        &mut self,
-        a: A,
-        center: &Center,
-        (near, own): (&[u32], Lanes4),
-        points: &[EulerianParticle],
-    ) -> usize {
-        let (fours, rest) = near.as_chunks::<4>();
-        let own = [Lanes4::splat(own.0[0]), Lanes4::splat(own.0[1]), Lanes4::splat(own.0[2])];
-        for n in 0..fours.len().min(FOURS) {
-            self.put(a, n, center, &own, records(&fours[n], points));
-        }
-        if rest.is_empty() {
-            return fours.len();
-        }
-        self.put(a, fours.len(), center, &own, records(&filled_up(rest), points));
-        self.arms.clear_from(rest.len(), fours.len(), center);
-        fours.len() + 1
+    fn arms(&mut self) -> &mut Arms {
+        &mut self.arms
     }
 
     #[inline(always)]
-    fn put<A: FourLanes>(
-        &mut self,
-        a: A,
-        n: usize,
-        center: &Center,
-        own: &[Lanes4; 3],
-        of: [&EulerianParticle; 4],
-    ) {
-        self.arms.put(a, n, center, of);
+    fn put<A: FourLanes>(&mut self, a: A, n: usize, of: [&EulerianParticle; 4]) {
         let [x, y, z, _] = a.transpose(velocities(of));
-        let z = if A::AXES == 3 { a.sub(z, own[2]) } else { Lanes4::ZERO };
-        self.passing[n] = [a.sub(x, own[0]), a.sub(y, own[1]), z];
+        let z = if A::AXES == 3 { a.sub(z, self.own[2]) } else { Lanes4::ZERO };
+        self.passing[n] = [a.sub(x, self.own[0]), a.sub(y, self.own[1]), z];
     }
+}
+
+impl RateBatch {
+    const NONE: Self = Self {
+        arms: Arms::NONE,
+        own: [Lanes4::ZERO; 3],
+        passing: [[Lanes4::ZERO; 3]; FOURS],
+        weights: [[0.0; 4]; FOURS],
+    };
 
     /// Evaluates the kernel. By number: a loop over contiguous rows is computed several at once.
     #[inline(always)]
@@ -248,19 +236,18 @@ impl Batch {
 }
 
 /// Sums over the neighbours of a particle in lanes.
-struct RateSums {
+struct GradientSums {
     moment: MomentSums,
     /// `sum_j V_0,j w_ij v_ij (x) x_ij`, by columns.
     spread: [[Lanes4; 3]; 3],
 }
 
-impl RateSums {
+impl GradientSums {
     const ZERO: Self = Self { moment: MomentSums::ZERO, spread: [[Lanes4::ZERO; 3]; 3] };
 
     /// Adds a batch, in two loops whose sums stay in registers.
     #[inline(always)]
-    fn add<A: FourLanes>(&mut self, a: A, batch: &mut Batch, fours: usize) {
-        let fours = fours.min(FOURS);
+    fn add<A: FourLanes>(&mut self, a: A, batch: &mut RateBatch, fours: usize) {
         for n in 0..fours {
             let arm = &mut batch.arms.arm[n];
             let weighted = weighted(a, a.mul(batch.arms.volume[n], Lanes4(batch.weights[n])), arm);

@@ -55,13 +55,14 @@ pub(super) struct PointColumns<'a> {
 
 impl EulerianRows {
     /// Brings the lists up to date, with capacity for all that depends on them. Positions and reference
-    /// positions, m.
+    /// positions, m, and the velocities, m/s, that have moved the particles for `dt`, s.
     pub fn update_lists(
         &mut self,
         position: &[DVec3],
         reference: &[DVec3],
+        (velocity, dt): (&[DVec3], f64),
     ) -> Result<(), (crate::world::BodyId, crate::neighbors::NeighborError)> {
-        if self.lists.update(position)? {
+        if self.lists.update(position, velocity, dt)? {
             let pairs = self.lists.pairs.pairs();
             self.near.neighbors.resize(pairs, 0);
             self.near.weights.resize(pairs, 0.0);
