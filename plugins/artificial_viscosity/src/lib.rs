@@ -88,6 +88,10 @@ impl ArtificialViscosity {
     }
 }
 
+/// Speed of approach over that of waves below which a pair does not shorten the step. Between particles that
+/// rest or fly together its sign is that of rounding, and the step would be as well.
+const QUIET: f64 = 1e-9;
+
 /// The pair force within one body.
 struct ViscousTerm {
     /// Whether pairs that part feel it too.
@@ -123,6 +127,7 @@ impl PairTerm for ViscousTerm {
         rates.heat += 0.5 * force * approach;
         // The force per mass and speed of approach: d(f/m)/d(v_ij) along the bond.
         let damping = slope * (linear - 2.0 * self.beta * push) * (square * per_length);
-        rates.damping += if self.parting { damping } else { approach.if_below(0.0, damping) };
+        let quiet = -QUIET * self.sound_speed;
+        rates.damping += if self.parting { damping } else { push.if_below(quiet, damping) };
     }
 }

@@ -45,10 +45,11 @@ impl MaterialModel for Hypoelastic {
         require_heating(self.hardening.as_ref(), self.heating.as_ref())?;
         let pressure = self.eos.unwrap_or(SolidEos::Linear).pressure(elastic.bulk, self.density)?;
         let rise = self.heating.map_or(0.0, |heating| heating.rise(self.density));
-        let shape = HypoelasticJ2 { shear: elastic.shear, hardening: self.hardening, rise };
+        let shape = HypoelasticJ2 { shear: elastic.shear, hardening: self.hardening };
         let temperature = self.heating.map(|heating| heating.temperature);
         let rise_by_heat = self.heating.map_or(0.0, |heating| heating.rise_by_heat(self.density));
-        let law = HypoelasticLaw { elastic, shape, pressure, temperature, rise_by_heat };
+        let specific_heat = self.heating.and_then(|heating| heating.specific_heat);
+        let law = HypoelasticLaw { elastic, shape, pressure, temperature, specific_heat, rise, rise_by_heat };
         Ok(Material::solid(self.density, law))
     }
 }
@@ -61,6 +62,10 @@ struct HypoelasticLaw {
     pressure: PressureLaw,
     /// Temperature at the start, K, if it plays a part.
     temperature: Option<f64>,
+    /// Specific heat, J/(kg K); none for no heating.
+    specific_heat: Option<f64>,
+    /// Rise of the temperature for each J/m3 of plastic work, K m3/J.
+    rise: f64,
     /// Rise of the temperature for each J/m3 of heat, K m3/J; zero without specific heat.
     rise_by_heat: f64,
 }
@@ -88,6 +93,10 @@ impl SolidLaw for HypoelasticLaw {
     fn initial_yield_stress(&self) -> Option<f64> {
         let hardening = self.shape.hardening.as_ref()?;
         Some(hardening.static_stress(0.0, self.temperature.unwrap_or_default()))
+    }
+
+    fn specific_heat(&self) -> Option<f64> {
+        self.specific_heat
     }
 
     fn stable_step_factor(&self, stretches: &Stretches) -> f64 {
@@ -145,16 +154,16 @@ impl HotLoop for HypoelasticLoop<'_, '_> {
                 plastic_strain: strain[k].0,
                 temperature: temperature.get(k) + law.rise_by_heat * viscous,
             };
-            let change = velocity_gradient_step(&reached[k].0, f);
-            reached[k].0 = *f;
+            let before = std::mem::replace(&mut reached[k].0, *f);
             if moves {
-                let gradient = change * (1.0 / rows.dt);
+                let gradient = velocity_gradient_step(&before, f) * (1.0 / rows.dt);
                 rows.plastic_work[k] = volume.ratio * law.shape.advance(&mut now, &gradient, rows.dt);
                 strain[k].0 = now.plastic_strain;
+                now.temperature += law.rise * rows.plastic_work[k];
                 temperature.set(k, now.temperature);
             } else {
                 // Deformed at the start, or bonds are cut: what is beyond yield then flows in the next step.
-                now.deviator = law.shape.elastic(&now.deviator, &change, 1.0);
+                now.deviator = law.shape.jump(&now.deviator, &before, f);
             }
             deviator[k].0 = now.deviator;
             let heat = StepHeat { plastic_work: rows.plastic_work[k], viscous };

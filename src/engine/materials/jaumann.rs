@@ -8,8 +8,9 @@
 use glam::DMat3;
 
 use super::hardening::Hardening;
+use super::j2::left_cauchy_green;
 use super::return_mapping::Trial;
-use crate::linalg::Sym3;
+use crate::linalg::{Eigen, Sym3, polar};
 
 /// State of the hypoelastic law before and after a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -18,7 +19,7 @@ pub struct HypoelasticState {
     pub deviator: Sym3,
     /// Accumulated plastic strain.
     pub plastic_strain: f64,
-    /// Temperature, K.
+    /// Temperature, K: a step leaves it as it is.
     pub temperature: f64,
 }
 
@@ -29,8 +30,6 @@ pub struct HypoelasticJ2 {
     pub shear: f64,
     /// Flow stress; none for a law without plasticity.
     pub hardening: Option<Hardening>,
-    /// Rise of the temperature for each J/m3 of plastic work, K m3/J.
-    pub rise: f64,
 }
 
 impl HypoelasticJ2 {
@@ -52,11 +51,27 @@ impl HypoelasticJ2 {
                 deviator = deviator * left;
                 work = increment * 0.5 * (before + stress * left);
                 state.plastic_strain += increment;
-                state.temperature += self.rise * work;
             }
         }
         state.deviator = deviator;
         work
+    }
+
+    /// The deviator after a change of F at once, without plastic flow: F after it is R U times F before, and
+    /// the body is stretched by U along axes that stay, and then turned by R. A step of the Jaumann rate is
+    /// of second order in both together.
+    pub(super) fn jump(&self, deviator: &Sym3, before: &DMat3, after: &DMat3) -> Sym3 {
+        if before == after {
+            return *deviator;
+        }
+        match polar(*after * before.inverse()) {
+            Some((rotation, stretch)) => {
+                let strain = Eigen::new(&stretch).map(f64::ln).deviator();
+                left_cauchy_green(&rotation, &(*deviator + strain * (2.0 * self.shear)))
+            }
+            // An inverted particle, which ends the run.
+            None => self.elastic(deviator, &velocity_gradient_step(before, after), 1.0),
+        }
     }
 
     /// The deviator after an elastic step.
@@ -75,7 +90,7 @@ impl HypoelasticJ2 {
 fn turn(s: &Sym3, gradient: &DMat3, dt: f64) -> Sym3 {
     let spin = (*gradient - gradient.transpose()) * (0.25 * dt);
     let rotation = (DMat3::IDENTITY - spin).inverse() * (DMat3::IDENTITY + spin);
-    super::j2::left_cauchy_green(&rotation, s)
+    left_cauchy_green(&rotation, s)
 }
 
 /// Velocity gradient at the middle of a step, times its length: the change of F by the mean of F before and

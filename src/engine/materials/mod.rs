@@ -14,6 +14,8 @@ mod hardening;
 mod heat_state;
 mod heating;
 mod hypoelastic;
+#[cfg(test)]
+mod hypoelastic_tests;
 mod j2;
 #[cfg(test)]
 mod j2_tests;

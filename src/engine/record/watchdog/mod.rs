@@ -1,6 +1,7 @@
 //! The watchdog: examines every step for conditions that invalidate results, and stops the run or warns.
 
 mod bodies_inside;
+mod crossed_planes;
 mod domain;
 mod energy_growth;
 mod free_modes;

@@ -1,6 +1,7 @@
 //! The system of the watchdog.
 
 use super::bodies_inside::BodiesInside;
+use super::crossed_planes::CrossedPlanes;
 use super::domain::DomainCheck;
 use super::energy_growth::{EnergyGrowth, resolution};
 use super::free_modes::FreeModes;
@@ -29,6 +30,7 @@ struct Watchdog {
     wrong_sign: WrongSign,
     passing: PassingBodies,
     inside: BodiesInside,
+    crossed: CrossedPlanes,
     soft: SoftUnderPressure,
     free: FreeModes,
     remedies: Remedies,
@@ -49,6 +51,7 @@ pub fn add_system(sim: &mut SimBuilder<'_>) {
         wrong_sign: WrongSign::new(sim),
         passing: PassingBodies::new(sim),
         inside: BodiesInside::new(sim),
+        crossed: CrossedPlanes::new(sim),
         soft: SoftUnderPressure::new(sim),
         free: FreeModes::new(sim),
         remedies: Remedies::new(sim),
@@ -80,6 +83,7 @@ impl Run for Watchdog {
             }
             self.passing.look(step)?;
             self.inside.look(step)?;
+            self.crossed.look(step)?;
             self.soft.look(step)?;
             self.free.look(step)?;
             self.wrong_sign.warn(step, &self.remedies, at_end);
@@ -92,7 +96,7 @@ impl Run for Watchdog {
             self.energy,
             &self.hourglass,
             &self.wrong_sign,
-            (&self.passing.told, &self.inside.told),
+            (&self.passing.told, &self.inside.told, &self.crossed.told),
             (&self.soft.told, &self.free.told),
             self.frames,
         ))
@@ -100,13 +104,13 @@ impl Run for Watchdog {
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        let Ok((energy, hourglass, wrong_sign, (passing, inside), (soft, free), frames)) =
+        let Ok((energy, hourglass, wrong_sign, (passing, inside, crossed), (soft, free), frames)) =
             postcard::from_bytes(state)
         else {
             return false;
         };
         (self.energy, self.hourglass, self.wrong_sign) = (energy, hourglass, wrong_sign);
-        (self.passing.told, self.inside.told) = (passing, inside);
+        (self.passing.told, self.inside.told, self.crossed.told) = (passing, inside, crossed);
         (self.soft.told, self.free.told) = (soft, free);
         self.frames.resume(frames);
         true

@@ -271,6 +271,47 @@ fn solids_that_pass_through_each_other_without_a_contact_are_named() {
 }
 
 #[test]
+fn bodies_that_go_through_a_symmetry_plane_are_named() {
+    let told = |ball: &str, more: &str| {
+        let mut sim = simulation(format!(
+            r#"(dimension: Two, materials: {{"rubber": NeoHookean(density: 1000.0, young: 1.0e5, poisson: 0.3)}},
+                bodies: [
+                    (name: "half", material: "rubber", shape: Box(min: (0, 0), max: (0.04, 0.04)), spacing: 0.01, formulation: TotalLagrangian),
+                    (name: "ball", material: "rubber", spacing: 0.01, shape: {ball}),
+                ],
+                {more} time: (end: 0.02), record: (every: 0.002))"#
+        ));
+        sim.run(|_| true).unwrap();
+        sim.warnings()
+            .iter()
+            .filter(|text| text.contains("`ball` goes through the symmetry plane X = 0 m"))
+            .count()
+    };
+    let plane = "conditions: [Symmetry(plane: X, at: 0)],";
+    let near = "Sphere(center: (0.04, 0.1), radius: 0.02), velocity: (-3.0, 0.0)";
+    for formulation in ["TotalLagrangian", "UpdatedLagrangian()", "Eulerian()", "Rigid()"] {
+        assert_eq!(told(&format!("{near}, formulation: {formulation}"), plane), 1, "{formulation}");
+    }
+    // It comes near the plane only; what stands for its image holds it; it is on a side where no body ends; a
+    // tool is driven along the axis.
+    let free = "formulation: Eulerian()";
+    assert_eq!(
+        told(&format!("Sphere(center: (0.09, 0.1), radius: 0.02), velocity: (-3.0, 0.0), {free}"), plane),
+        0
+    );
+    let held = r#"Sphere(center: (0.04, 0.1), radius: 0.02), velocity: (-3.0, 0.0), formulation: Eulerian()),
+        (name: "mirror", material: "rubber", shape: HalfSpace(point: (0, 0), normal: (1, 0)), spacing: 0.01, formulation: Rigid()"#;
+    let holds = r#"conditions: [Symmetry(plane: X, at: 0), Fix(on: Select(body: "mirror"))], contacts: [(between: ("ball", "mirror"))],"#;
+    assert_eq!(told(held, holds), 0);
+    assert_eq!(
+        told(&format!("Sphere(center: (-0.04, 0.1), radius: 0.02), velocity: (3.0, 0.0), {free}"), plane),
+        0
+    );
+    let driven = r#"conditions: [Symmetry(plane: X, at: 0), Velocity(on: Select(body: "ball"), value: (-3.0, None))],"#;
+    assert_eq!(told("Sphere(center: (0.04, 0.1), radius: 0.02), formulation: Rigid()", driven), 0);
+}
+
+#[test]
 fn hourglass_energy_of_a_body_that_no_wave_has_reached_is_not_judged() {
     let scene = |hourglass: f64, strain: f64| {
         let book = |account: &str, energy: f64| format!("Book(account: {account:?}, energy: {energy:?})");
