@@ -30,7 +30,10 @@ fn rounding_does_not_shorten_the_step() {
         let at_rest = time_after_forty_steps(formulation, "(0, 0)");
         for velocity in ["(3.7, -1.3)", "(-370, 20)"] {
             let flying = time_after_forty_steps(formulation, velocity);
-            assert!((flying - at_rest).abs() < 1e-9 * at_rest, "{formulation} {velocity}: {flying} {at_rest}");
+            assert!(
+                (flying - at_rest).abs() < 1e-9 * at_rest,
+                "{formulation} {velocity}: {flying} {at_rest}"
+            );
         }
     }
 }

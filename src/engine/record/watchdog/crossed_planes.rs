@@ -16,7 +16,7 @@ use crate::world::{BodyId, Mobility, Position, Removed};
 const DEPTH: f64 = 0.5;
 
 /// A body on one side of a plane.
-struct Beside {
+struct BodyAtPlane {
     body: BodyId,
     axis: usize,
     /// Coordinate of the plane, m.
@@ -31,7 +31,7 @@ struct Beside {
 
 /// Checks whether bodies go through symmetry planes.
 pub(super) struct CrossedPlanes {
-    pairs: Vec<Beside>,
+    pairs: Vec<BodyAtPlane>,
     /// Pairs that the user has been warned of.
     pub told: Vec<bool>,
 }
@@ -40,7 +40,7 @@ impl CrossedPlanes {
     /// All solids and rigid bodies that are wholly on a side of a plane on which bodies end at it.
     pub fn new(sim: &SimBuilder<'_>) -> Self {
         let planes = sim.mirror_planes();
-        let pairs: Vec<Beside> = planes.iter().flat_map(|plane| beside(plane, sim)).collect();
+        let pairs: Vec<BodyAtPlane> = planes.iter().flat_map(|plane| beside(plane, sim)).collect();
         Self { told: vec![false; pairs.len()], pairs }
     }
 
@@ -58,7 +58,7 @@ impl CrossedPlanes {
     }
 }
 
-impl Beside {
+impl BodyAtPlane {
     /// What to say if a particle of the body has gone through the plane; those whose motion along the axis is
     /// prescribed go where they are to go.
     fn crossing(&self, step: &Step<'_>) -> Result<Option<String>, StepError> {
@@ -82,8 +82,8 @@ impl Beside {
         let help = if is_mirrored {
             "what has failed or come off there is held by nothing: let `failure` or `remove_fragments` take it out"
         } else {
-            "it has met its mirror image there, which nothing stands for, as it did not end at the plane: a rigid `HalfSpace` at the \
-             plane, in contact with it without friction, does"
+            "it has met its mirror image there, which nothing stands for, as it did not end at the plane: a rigid \
+             `HalfSpace` at the plane, in contact with it without friction, does"
         };
         Ok(Some(format!(
             "`{}` goes through the symmetry plane {} = {} m, at {} and {}: {help}",
@@ -97,7 +97,7 @@ impl Beside {
 }
 
 /// The bodies wholly on a side of a plane on which bodies end at it.
-fn beside(plane: &MirrorPlane, sim: &SimBuilder<'_>) -> Vec<Beside> {
+fn beside(plane: &MirrorPlane, sim: &SimBuilder<'_>) -> Vec<BodyAtPlane> {
     let axis = plane.axis;
     // Of the particles: a half-space has a single one.
     let side_of = |body: &BodyPlan| {
@@ -113,7 +113,7 @@ fn beside(plane: &MirrorPlane, sim: &SimBuilder<'_>) -> Vec<Beside> {
         let side = side_of(body).filter(|side| sides.contains(side))?;
         let is_mirrored = plane.bodies.contains(body.id);
         let depth = DEPTH * body.spacing;
-        Some(Beside { body: body.id, axis, at: plane.at, side, depth, is_mirrored })
+        Some(BodyAtPlane { body: body.id, axis, at: plane.at, side, depth, is_mirrored })
     });
     found.collect()
 }
