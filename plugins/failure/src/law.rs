@@ -38,10 +38,12 @@ struct LawColumns<'a> {
     deformation: &'a mut [DamagedDeformation],
     volume: &'a mut [FailedVolume],
     mean: &'a mut [FailedStress],
+    /// Where plastic work heats, or the criterion depends on it.
+    temperature: Option<&'a mut [Temperature]>,
 }
 
 impl<'a> LawColumns<'a> {
-    fn take(state: &mut StateRows<'a>) -> Self {
+    fn take(state: &mut StateRows<'a>, has_temperature: bool) -> Self {
         Self {
             damage: state.take(),
             index: state.take(),
@@ -50,6 +52,7 @@ impl<'a> LawColumns<'a> {
             deformation: state.take(),
             volume: state.take(),
             mean: state.take(),
+            temperature: has_temperature.then(|| state.take()),
         }
     }
 }
@@ -103,7 +106,12 @@ impl FailingLaw {
             rows.stress[k] = cofactor(f) * mean;
             0.5 * (volume * mean).powi(2) / self.inner.elastic().bulk
         };
-        rows.plastic_work[k] *= 1.0 - damage;
+        // The law has heated by the plastic work of a particle without damage.
+        let lost = damage * rows.plastic_work[k];
+        rows.plastic_work[k] -= lost;
+        if let Some(temperature) = &mut own.temperature {
+            temperature[k].0 -= self.inner.plastic_heating() * lost;
+        }
         rows.modulus[k] *= 1.0 - damage;
         if rows.dt > 0.0 {
             let change = *f - own.deformation[k].0;
@@ -139,6 +147,10 @@ impl SolidLaw for FailingLaw {
 
     fn specific_heat(&self) -> Option<f64> {
         self.inner.specific_heat()
+    }
+
+    fn plastic_heating(&self) -> f64 {
+        self.inner.plastic_heating()
     }
 
     fn initial_yield_stress(&self) -> Option<f64> {
@@ -192,9 +204,9 @@ impl SolidLaw for FailingLaw {
         // Taken out of the rows, so that the loop can hand both on.
         let mut all = std::mem::take(&mut rows.state);
         let mut state = all.reborrow();
-        let mut own = LawColumns::take(&mut state);
+        let has_temperature = self.watch.temperature || self.inner.plastic_heating() > 0.0;
+        let mut own = LawColumns::take(&mut state, has_temperature);
         let now = self.watch.plastic.then(|| state.take::<PlasticStrain>());
-        let temperature = self.watch.temperature.then(|| state.take::<Temperature>());
         for k in 0..n {
             if own.damage[k].0 >= 1.0 {
                 self.failed(k, &given[k], rows, &mut own);
@@ -207,7 +219,7 @@ impl SolidLaw for FailingLaw {
                     deformation: &given[k],
                     stress: &stress,
                     plastic: now.as_deref().map_or(0.0, |now| now[k].0 - strain[k]),
-                    temperature: temperature.as_deref().map_or(0.0, |temperature| temperature[k].0),
+                    temperature: own.temperature.as_deref().map_or(0.0, |temperature| temperature[k].0),
                     dt: rows.dt,
                 };
                 let (index, met) = self.watch.index(own.index[k].0, &seen);

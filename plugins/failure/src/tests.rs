@@ -2,10 +2,10 @@
 
 use glam::DMat3;
 use meshless_engine::materials::{
-    DecoupledNeoHookean, Law, MAX_STATE, Material, MaterialModel, NeoHookean, SolidLaw, StateColumns,
-    StateRows, StressRows,
+    DecoupledNeoHookean, Hardening, Heating, Hypoelastic, J2, Law, MAX_STATE, Material, MaterialModel,
+    NeoHookean, SolidLaw, StateColumns, StateRows, StressRows,
 };
-use meshless_engine::world::{ColumnSet, Damage};
+use meshless_engine::world::{ColumnSet, Damage, Temperature};
 
 use crate::criterion::{Criterion, WatchedCriterion};
 use crate::johnson_cook::JohnsonCookFailure;
@@ -26,6 +26,8 @@ struct Specimen {
     energy: [f64; 1],
     modulus: [f64; 1],
     work: f64,
+    /// Plastic work that the law reports, J/m3.
+    plastic_work: f64,
 }
 
 fn inner(material: Material) -> std::sync::Arc<dyn SolidLaw> {
@@ -62,6 +64,7 @@ impl Specimen {
             energy: [0.0],
             modulus: [0.0],
             work: 0.0,
+            plastic_work: 0.0,
         };
         specimen.with_state(|law, state| law.start(state));
         specimen.to(DMat3::IDENTITY, 0.0);
@@ -81,6 +84,7 @@ impl Specimen {
         let before = self.stress[0];
         // What stands in the output before the call is of no account.
         let (mut stress, mut energy, mut modulus) = ([DMat3::NAN], [f64::NAN], [f64::NAN]);
+        let mut plastic_work = [0.0];
         self.with_state(|law, state| {
             law.stress(&mut StressRows {
                 dt,
@@ -91,12 +95,13 @@ impl Specimen {
                 energy: &mut energy,
                 modulus: &mut modulus,
                 strength: &mut [f64::INFINITY],
-                plastic_work: &mut [0.0],
+                plastic_work: &mut plastic_work,
                 state,
             });
         });
         let (mean, change) = (0.5 * (before + stress[0]), f - self.f);
         self.work += (0..3).map(|k| mean.col(k).dot(change.col(k))).sum::<f64>();
+        self.plastic_work += plastic_work[0];
         (self.f, self.stress, self.energy, self.modulus) = (f, stress, energy, modulus);
     }
 
@@ -118,6 +123,30 @@ fn stretched(x: f64, y: f64) -> DMat3 {
 }
 
 const STRAIN: Criterion = Criterion::MaximumPrincipalStrain { limit: 0.05 };
+
+#[test]
+fn a_particle_heats_by_the_plastic_work_that_damage_leaves() {
+    let (density, heat, yield_stress) = (2700.0, 900.0, 1e-3 * SHEAR);
+    let heating = Heating { specific_heat: Some(heat), taylor_quinney: 0.9, temperature: 300.0 };
+    let (bulk, shear) = (Some(BULK), Some(SHEAR));
+    let hardening = Hardening::Perfect { yield_stress };
+    let (young, poisson, heating, eos) = (None, None, Some(heating), None);
+    let j2 = J2 { density, young, poisson, bulk, shear, hardening, heating, eos }.build();
+    let hypoelastic =
+        Hypoelastic { density, young, poisson, bulk, shear, hardening: Some(hardening), heating, eos }
+            .build();
+    for material in [j2.unwrap(), hypoelastic.unwrap()] {
+        let mut specimen = Specimen::new(material, STRAIN, 1e4, AfterFailure::NoDeviator);
+        for k in 1..=2000 {
+            let strain = 0.15 * f64::from(k) / 2000.0;
+            specimen.to(stretched(strain.exp(), (-strain).exp()), 1e-7);
+        }
+        assert_eq!(specimen.damage(), 1.0);
+        let rise = specimen.with_state(|_, mut state| state.take::<Temperature>()[0].0) - 300.0;
+        let wanted = 0.9 * specimen.plastic_work / (density * heat);
+        assert!(wanted > 0.0 && (rise / wanted - 1.0).abs() < 1e-9, "{rise} {wanted}");
+    }
+}
 
 #[test]
 fn damage_grows_as_the_cube_of_time_from_the_limit_on() {

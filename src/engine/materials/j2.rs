@@ -139,6 +139,10 @@ impl SolidLaw for PlasticLaw {
         self.specific_heat
     }
 
+    fn plastic_heating(&self) -> f64 {
+        self.rise
+    }
+
     fn stable_step_factor(&self, stretches: &Stretches) -> f64 {
         self.pressure.step_factor(&self.elastic, stretches)
     }

@@ -135,6 +135,12 @@ pub trait SolidLaw: Send + Sync {
         None
     }
 
+    /// Rise of the temperature for each J/m3 of plastic work, K m3/J, of laws that heat by it; they have the
+    /// column [`Temperature`](crate::world::Temperature).
+    fn plastic_heating(&self) -> f64 {
+        0.0
+    }
+
     /// Factor of the stable time step at the extreme stretches of a body, as seen from the undeformed
     /// configuration.
     fn stable_step_factor(&self, stretches: &Stretches) -> f64;
