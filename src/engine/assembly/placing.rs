@@ -56,6 +56,8 @@ pub(super) fn place_bodies<'r>(
         let parts = place().map_err(|found: Vec<Problem>| problems.extend(found));
         let Ok((formulation, sites, bounds)) = parts else { continue };
         let material = match materials.iter().find(|(name, _)| *name == body.material) {
+            // Walls have no material, whatever the name: no mass, which gravity would work on.
+            _ if formulation.0.kind == BodyKind::Boundary => Material::nothing(),
             Some((_, material)) => material.clone(),
             None if scene.materials.contains_key(&body.material) => continue,
             None => Material::nothing(),

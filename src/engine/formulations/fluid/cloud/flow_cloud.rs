@@ -14,6 +14,7 @@ use super::wall_end::WallEnd;
 use crate::formulations::fluid::lanes::{FlowParticle, FluidKernel, Periods};
 use crate::formulations::fluid::lists::blocks::Blocks;
 use crate::formulations::fluid::lists::{FlowPairs, NearRows};
+use crate::neighbors::Periodic;
 use crate::parallel::{EIGHT, Lanes4};
 use crate::scene::Precision;
 use crate::world::BodyId;
@@ -135,6 +136,11 @@ impl FlowCloud {
     /// [whole cloud](FlowCloud::whole) before.
     pub fn records(&self) -> &[FlowParticle] {
         &self.records
+    }
+
+    /// The periodic axes of the domain.
+    pub fn periodic(&self) -> &Periodic {
+        self.pairs.periodic()
     }
 
     /// The vector from one place to another, the shortest of its periodic images, m.

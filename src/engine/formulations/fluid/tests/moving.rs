@@ -67,6 +67,20 @@ fn a_periodic_flow_that_moves_as_a_whole_is_judged_like_one_at_rest() {
 }
 
 #[test]
+fn the_material_that_a_wall_names_has_no_influence() {
+    let named =
+        |name: &str| ended(&tank(4.0, 3.0).replace(r#"material: "wall""#, &format!(r#"material: "{name}""#)));
+    let energies = |sim: &Simulation| {
+        let ledger = sim.ledger();
+        [ledger.total_named("kinetic"), ledger.total_named("gravity"), ledger.balance_error()]
+    };
+    let of_none = energies(&named("wall"));
+    for name in ["water", "wood"] {
+        assert_eq!(energies(&named(name)), of_none, "{name}");
+    }
+}
+
+#[test]
 fn a_tank_that_moves_with_its_water_is_judged_like_one_at_rest() {
     let (rest, moving) = (ended(&tank(0.0, 0.0)), ended(&tank(4.0, 3.0)));
     assert_eq!(subjects(&rest), subjects(&moving));

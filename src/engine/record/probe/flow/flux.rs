@@ -2,10 +2,11 @@
 //!
 //! `Q = sum_j V_j v_j.n max(0, 1 - |d_j| / b) / b` with the distance d_j from the plane and b twice the
 //! spacing: the mean over the layers of particles near the plane, which for evenly spread particles is that
-//! in the plane.
+//! in the plane. An oblique plane goes on in the images of a periodic domain.
 
 use glam::DVec3;
 
+use super::images::{contains_image, crossed_period};
 use crate::formulations::fluid::FlowCloud;
 use crate::parallel::sum_over_blocks;
 use crate::record::probe::measure::Measure;
@@ -45,16 +46,29 @@ impl Measure for FluxGauge {
             let (position, velocity) = (view.read::<Position>()?, view.read::<Velocity>()?);
             let (mass, density) = (view.read::<Mass>()?, view.read::<Density>()?);
             let removed = view.read::<Removed>()?;
-            let width = WIDTH * world.body(group.body).spacing;
+            let spacing = world.body(group.body).spacing;
+            let (width, period) = (WIDTH * spacing, crossed_period(self.normal, cloud.periodic(), spacing));
+            let (rise, others) = (period.dot(self.normal), cloud.periodic().lengths() - period);
             let (mass, density, velocity) = (&mass[..], &density[..], &velocity[..]);
             let of_row = |(row, x): (usize, &Position)| {
                 let offset = cloud.offset(self.at, x.0);
                 let distance = offset.dot(self.normal);
-                let share = (1.0 - distance.abs() / width) / width;
-                let foot = self.at + offset - self.normal * distance;
-                let counts = share > 0.0 && self.within.as_ref().is_none_or(|region| region.contains(foot));
+                let images = if rise == 0.0 {
+                    0..=0
+                } else {
+                    let (one, other) = ((-width - distance) / rise, (width - distance) / rise);
+                    one.min(other).ceil() as i64..=one.max(other).floor() as i64
+                };
+                let share_of = |k: i64| {
+                    let (image, distance) = (offset + k as f64 * period, distance + k as f64 * rise);
+                    let share = (1.0 - distance.abs() / width) / width;
+                    let foot = self.at + image - self.normal * distance;
+                    let is_within = |region: &Box<dyn Region>| contains_image(&**region, foot, others);
+                    let counts = share > 0.0 && self.within.as_ref().is_none_or(is_within);
+                    if counts { share } else { 0.0 }
+                };
                 let speed = velocity[row].0.dot(self.normal);
-                if counts { mass[row].0 / density[row].0 * speed * share } else { 0.0 }
+                mass[row].0 / density[row].0 * speed * images.map(share_of).sum::<f64>()
             };
             let (start, removed) = (group.rows.start, &removed[..]);
             flux += sum_over_blocks(&position[group.rows.clone()], &|first, rows: &[Position]| {

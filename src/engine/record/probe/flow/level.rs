@@ -1,13 +1,14 @@
 //! Height of the surface of fluids above a point, and the wet share of the line up from there.
 //!
 //! A place is wet where fluids fill at least half of the space that walls leave: `sum_f V_f W >= (1 - sum_w
-//! V_w W) / 2`.
+//! V_w W) / 2`. An oblique line goes on in the images of a periodic domain.
 
 use glam::DVec3;
 
 use super::carrier::GaugeCarrier;
+use super::images::shifts_to_line;
 use super::watch::WallWatch;
-use crate::formulations::fluid::FlowCloud;
+use crate::formulations::fluid::{FlowCloud, FlowParticle};
 use crate::record::probe::measure::Measure;
 use crate::schedule::Resources;
 use crate::world::{BodyId, MissingColumn, World};
@@ -105,14 +106,17 @@ fn water_levels(cloud: &FlowCloud, at: DVec3, up: DVec3) -> [f64; 2] {
 
 fn near_line(cloud: &FlowCloud, at: DVec3, up: DVec3) -> Vec<NearLine> {
     let support = cloud.kernel.support;
-    let of = |(row, record): (usize, &crate::formulations::fluid::FlowParticle)| {
-        let offset = cloud.offset(at, record.position());
+    let offset = |record: &FlowParticle| cloud.offset(at, record.position());
+    let there = || cloud.records().iter().enumerate().filter(|(_, record)| record.volume() > 0.0);
+    let shifts = shifts_to_line(up, there().map(|(_, record)| offset(record)), support, cloud.periodic());
+    let of = |(row, record): (usize, &FlowParticle), shift: DVec3| {
+        let offset = offset(record) + shift;
         let height = offset.dot(up);
         let aside = (offset - up * height).length_squared();
-        let within = aside < support * support && height > -support && record.volume() > 0.0;
+        let within = aside < support * support && height > -support;
         within.then_some(NearLine { height, aside, volume: record.volume(), fluid: row < cloud.fluid })
     };
-    cloud.records().iter().enumerate().filter_map(of).collect()
+    there().flat_map(|particle| shifts.iter().filter_map(move |&shift| of(particle, shift))).collect()
 }
 
 /// Above zero where the line is wet at that height.

@@ -2,6 +2,7 @@
 
 mod carrier;
 mod flux;
+mod images;
 mod level;
 mod nearest;
 mod reaction;

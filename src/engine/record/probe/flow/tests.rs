@@ -178,6 +178,46 @@ fn the_flux_through_a_plane_is_speed_times_height() {
     near(&first(&scene(part)), &[("flux", 0.5)], 1e-9);
 }
 
+/// A channel 1 m long and 0.5 m high that is periodic along x.
+fn in_a_periodic_channel(velocity: &str, gravity: &str, probe: &str) -> f64 {
+    let domain = "domain: (min: (0, -1), max: (1, 3), periodic: [X])";
+    let text = text(WATER, velocity, gravity, probe);
+    first(&text.replace("domain: (min: (-1, -1), max: (3, 3))", domain))[0].1
+}
+
+/// The plane that rises by a quarter crosses the channel within two periods, wherever it starts.
+#[test]
+fn the_flux_through_an_oblique_plane_of_a_periodic_channel_is_that_of_all_of_it() {
+    for (place, normal) in
+        [("at: (0.5, 0.25)", "(1, 0)"), ("at: (0.9, 0)", "(1, 4)"), ("at: (0.1, 0.5)", "(-1, 4)")]
+    {
+        let probe = at(&format!("Flux(normal: {normal})"), place);
+        let flux = in_a_periodic_channel(r#""2", "0""#, "(0, 0)", &probe);
+        let wanted = if normal.starts_with("(-") { -1.0 } else { 1.0 };
+        assert!((flux - wanted).abs() < 0.02, "{place} {normal}: {flux}");
+    }
+    // A part of a level plane, on the other side of the domain.
+    let part = "Flux(normal: (0, 1), within: Box(min: (0.7, 0), max: (0.9, 0.5)))";
+    for x in [0.8, 0.1, 5.3] {
+        let probe = at(part, &format!("at: ({x}, 0.25)"));
+        let flux = in_a_periodic_channel(r#""0", "3""#, "(0, 0)", &probe);
+        assert!((flux - 0.2 * 3.0).abs() < 1e-9, "{x}: {flux}");
+    }
+    // A part of an oblique plane: where it is, and not where its images are.
+    let part = "Flux(normal: (1, 4), within: Box(min: (0.2, 0), max: (0.6, 0.5)))";
+    let flux = in_a_periodic_channel(r#""2", "0""#, "(0, 0)", &at(part, "at: (0.4, 0.25)"));
+    assert!((flux - 2.0 * 0.1).abs() < 0.01, "{flux}");
+}
+
+/// A film on a slope of 60 degrees is twice as deep against gravity as across, and the gauge leaves the
+/// domain on its way up.
+#[test]
+fn the_level_of_a_film_on_a_slope_is_that_beyond_the_period_too() {
+    let gravity = "(8.495709211125343, -4.905)";
+    let depth = in_a_periodic_channel(r#""0", "0""#, gravity, &at("WaterLevel()", "at: (0.8, 0)"));
+    assert!((depth - 1.0).abs() < 0.005, "{depth}");
+}
+
 #[test]
 fn a_turning_box_has_twice_its_rate_as_vorticity_and_its_outer_layer_as_surface() {
     let probe = |quantity: &str| at(quantity, r#"on: Select(within: Box(min: (0, 0), max: (1, 0.0249)))"#);
