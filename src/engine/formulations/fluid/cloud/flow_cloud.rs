@@ -138,6 +138,25 @@ impl FlowCloud {
         &self.records
     }
 
+    /// Rows of all that bounds the fluids, every particle once: a thin body is there twice.
+    pub fn boundaries_once(&self) -> impl Iterator<Item = usize> + '_ {
+        let bodies = self.groups.iter().map(|group| Some(group.body));
+        let before = std::iter::once(None).chain(bodies);
+        let first = self.groups.iter().zip(before).filter(|(group, before)| *before != Some(group.body));
+        first.filter(|(group, _)| group.fluid().is_none()).flat_map(|(group, _)| group.cloud.clone())
+    }
+
+    /// The row of a particle that bounds the fluids whose pressure is that on the side to which a direction
+    /// points: of a thin body that in the copy of this side.
+    pub fn row_facing(&self, row: usize, direction: DVec3) -> usize {
+        let mut thin = self.pairs.thin.iter();
+        let found = thin.find_map(|body| {
+            let k = body.particle(row)?;
+            Some(body.copy_seen(k, direction, |row| self.records[row].position()))
+        });
+        found.unwrap_or(row)
+    }
+
     /// The periodic axes of the domain.
     pub fn periodic(&self) -> &Periodic {
         self.pairs.periodic()

@@ -118,9 +118,21 @@ impl ThinBody {
         }
     }
 
+    /// Number in the body of row `j` of the cloud, if it is of one of the copies.
+    pub fn particle(&self, j: usize) -> Option<usize> {
+        self.copies.iter().find(|copy| copy.contains(&j)).map(|copy| j - copy.start)
+    }
+
+    /// The row of particle `k` in the copy that a fluid particle in some direction from it sees, from the
+    /// positions of the cloud.
+    pub fn copy_seen(&self, k: usize, direction: DVec3, position: impl Fn(usize) -> DVec3) -> usize {
+        let is_behind = self.normal(k, position).dot(direction) < 0.0;
+        self.copies[usize::from(is_behind)].start + k
+    }
+
     /// Normal at particle `k`, of any length, from the positions of the cloud.
-    fn normal(&self, k: usize, positions: &[DVec3]) -> DVec3 {
-        self.frames[k].normal(|j| positions[self.copies[0].start + j])
+    fn normal(&self, k: usize, position: impl Fn(usize) -> DVec3) -> DVec3 {
+        self.frames[k].normal(|j| position(self.copies[0].start + j))
     }
 }
 
@@ -181,11 +193,8 @@ impl Sides<'_> {
             return i == j || !self.thin.iter().any(|body| self.hides(body, i.min(j), i.max(j), walls));
         }
         for body in self.thin {
-            for (copy, positive) in body.copies.iter().zip([true, false]) {
-                if copy.contains(&j) {
-                    let normal = body.normal(j - copy.start, self.positions);
-                    return (normal.dot(self.from(j, i)) >= 0.0) == positive;
-                }
+            if let Some(k) = body.particle(j) {
+                return body.copy_seen(k, self.from(j, i), |row| self.positions[row]) == j;
             }
         }
         true
@@ -214,7 +223,7 @@ impl Sides<'_> {
 
     /// Whether that line passes beside particle `j` of the body.
     fn crosses(&self, body: &ThinBody, j: usize, i: usize, k: usize) -> bool {
-        let normal = body.normal(j - body.copies[0].start, self.positions);
+        let normal = body.normal(j - body.copies[0].start, |row| self.positions[row]);
         let (first, second) = (self.from(j, i), self.from(j, k));
         let (a, b) = (normal.dot(first), normal.dot(second));
         (a >= 0.0) != (b >= 0.0) && (first + a / (a - b) * (second - first)).length() < REACH * body.spacing

@@ -29,12 +29,13 @@ fn rain_in(
     } else {
         ("Two", "(0.04, 1.04)", "Box(min: (-0.2, -0.08), max: (0.8, 0.0))")
     };
+    let shape = if below.contains("shape:") { String::new() } else { format!("shape: {floor}") };
     let low = if dimension == 3 { "(0, 1, 0)" } else { "(0, 1)" };
     let sim = simulation(&format!(
         r#"(precision: {precision}, dimension: {name}, materials: {{"water": Fluid(density: {DENSITY}, sound_speed: {SOUND}), "rubber": NeoHookean(density: 1200.0, young: 1.0e5, poisson: 0.3)}},
             bodies: [
                 (name: "water", material: "water", spacing: {SPACING}, formulation: Fluid(pressure: 0.0), shape: Box(min: {low}, max: {size})),
-                (name: "below", {below}, spacing: {SPACING}, shape: {floor}),
+                (name: "below", {below}, spacing: {SPACING}, {shape}),
             ], time: (end: 1.0))"#
     ));
     let (view, rows) = sim.world().body_view(BodyId(0));
@@ -57,27 +58,55 @@ fn rain_in(
 
 pub const WALL: &str = r#"material: "wall", formulation: Wall()"#;
 
+/// Lone particles fall onto `below` at these speeds over that of sound; particles that were torn out of a fluid
+/// have lost density, and are drawn to the wall.
+fn assert_that_nothing_passes(dimension: usize, falls: [(f64, f64); 4], below: &str) {
+    for (speed, density) in falls {
+        let velocity = DVec3::new(0.3, -1.0, 0.0).normalize() * speed * SOUND;
+        let mut sim = rain(dimension, 2.6, velocity, density, below);
+        let mut lowest = f64::INFINITY;
+        sim.run(|sim| {
+            let heights = column::<Position>(sim, 0).into_iter().map(|x| x.0.y);
+            lowest = heights.fold(lowest, f64::min);
+            sim.clock().time < 0.1 / (speed * SOUND)
+        })
+        .expect("a run");
+        assert!(lowest > -0.5 * SPACING && lowest < 2.0 * SPACING, "{dimension} {speed} {density}: {lowest}");
+        let balance = sim.ledger().relative_error().abs();
+        assert!(balance < 0.02, "{dimension} {speed} {density}: {balance}");
+    }
+}
+
 #[test]
 fn lone_particles_do_not_pass_a_wall_and_keep_their_energy() {
     for dimension in [2, 3] {
-        // A particle that was torn out of a fluid has lost density, and is drawn to the wall.
-        for (speed, density) in [(0.02, 1.0), (0.2, 1.0), (0.02, 0.5), (0.2, 0.4)] {
-            let velocity = DVec3::new(0.3, -1.0, 0.0).normalize() * speed * SOUND;
-            let mut sim = rain(dimension, 2.6, velocity, density, WALL);
-            let mut lowest = f64::INFINITY;
-            sim.run(|sim| {
-                let heights = column::<Position>(sim, 0).into_iter().map(|x| x.0.y);
-                lowest = heights.fold(lowest, f64::min);
-                sim.clock().time < 0.1 / (speed * SOUND)
-            })
-            .expect("a run");
-            assert!(
-                lowest > -0.5 * SPACING && lowest < 2.0 * SPACING,
-                "{dimension} {speed} {density}: {lowest}"
-            );
-            let balance = sim.ledger().relative_error().abs();
-            assert!(balance < 0.02, "{dimension} {speed} {density}: {balance}");
+        assert_that_nothing_passes(dimension, [(0.02, 1.0), (0.2, 1.0), (0.02, 0.5), (0.2, 0.4)], WALL);
+    }
+}
+
+/// The particles of such a wall repel as spheres, between which a particle that is drawn to it with half of its
+/// density passes.
+#[test]
+fn lone_particles_do_not_pass_a_wall_from_a_particle_file() {
+    for dimension in [2, 3] {
+        let rows = |low: f64, high: f64| {
+            let count = ((high - low) / SPACING).round() as i32;
+            (0..count).map(move |k| low + (f64::from(k) + 0.5) * SPACING)
+        };
+        let across: Vec<f64> = if dimension == 3 { rows(-0.2, 0.2).collect() } else { vec![0.0] };
+        let mut text = "x,y,z,volume\n".to_owned();
+        for x in rows(-0.2, 0.8) {
+            for y in rows(-0.08, 0.0) {
+                for z in &across {
+                    text += &format!("{x},{y},{z},{}\n", SPACING.powi(dimension as i32));
+                }
+            }
         }
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("floor.csv");
+        std::fs::write(&file, text).expect("a file");
+        let falls = [(0.02, 1.0), (0.2, 1.0), (0.02, 0.9), (0.2, 0.9)];
+        assert_that_nothing_passes(dimension, falls, &format!("{WALL}, shape: Points(file: {file:?})"));
     }
 }
 

@@ -51,8 +51,8 @@ pub struct Repulsion {
 }
 
 impl Repulsion {
-    /// That of the boundaries of a flow of smoothing length `h`, m, whose shapes are known; and the distance
-    /// within which a fluid particle that is repelled has a boundary particle, m.
+    /// That of the boundaries of a flow of smoothing length `h`, m, and the distance within which a fluid
+    /// particle that is repelled has a boundary particle, m.
     pub fn new(groups: &[Group], h: f64, sim: &SimBuilder<'_>) -> (Self, f64) {
         let fluid = sim.body(groups[0].body);
         let dimension = sim.dimension().count() as i32;
@@ -71,9 +71,8 @@ impl Repulsion {
             };
             let stiffness = groups.iter().map_while(stiffness).collect();
             let reach = range + NEAREST * body.spacing;
-            let Some(surface) = BoundaryShape::of(group, stiffness, reach, sim) else { continue };
             widest = f64::max(widest, reach);
-            surfaces.push(surface);
+            surfaces.push(BoundaryShape::of_any(group, stiffness, reach, sim));
         }
         (Self { surfaces, range, close: Vec::new(), is_short: true }, widest)
     }

@@ -4,9 +4,9 @@
 //! the shape there: by the motion of the whole body, where that is one affine map, else by the affine map
 //! that fits the particles of the body around it.
 //!
-//! A body that has lost particles has another shape. Its particles are spheres, and the
-//! distance is that from the nearest. They overlap, so that nothing passes between two of them in the plane
-//! or four in space, and end before a fluid at rest begins.
+//! A body that has lost particles has another shape, and that of a particle file is not known. Their
+//! particles are spheres, and the distance is that from the nearest. They overlap, so that nothing passes
+//! between two of them in the plane or four in space, and end before a fluid at rest begins.
 
 use glam::{DMat3, DVec3};
 
@@ -28,7 +28,7 @@ use crate::world::ReferencePosition;
 /// particle.
 const OUTSIDE: f64 = 16.0;
 
-/// Radii of the spheres of a worn body in the plane and in space, over its spacing.
+/// Radii of the spheres of a body without a known shape in the plane and in space, over its spacing.
 const SPHERES: [f64; 2] = [0.65, 0.75];
 
 /// Distance from a face up to which a fluid particle is before it, over the spacing of the wall: those of the
@@ -38,15 +38,16 @@ const BEFORE: f64 = 0.85;
 /// The shape of a boundary.
 pub struct BoundaryShape {
     pub group: Group,
-    pub region: Box<dyn Region>,
+    /// None of a body from a particle file.
+    region: Option<Box<dyn Region>>,
     /// Stiffness of its repulsion of each fluid, N/m.
     pub stiffness: Vec<f64>,
     /// Spacing of its particles, m.
     pub spacing: f64,
     /// Kind of the body.
     kind: BodyKind,
-    /// Whether it has lost particles.
-    pub is_worn: bool,
+    /// Whether its particles are spheres: it has lost some, or is from a particle file.
+    is_made_of_spheres: bool,
     /// The last motion, of a body that has one; none where it has not been looked for.
     kept: Option<Option<BodyMotion>>,
     /// Distance of the nearest of its particles beyond which a particle is not beside it, m.
@@ -111,22 +112,28 @@ impl BoundaryView<'_> {
 }
 
 impl BoundaryShape {
-    /// That of a body whose shape is known, with a stiffness of the repulsion of each fluid, N/m; its nearest
-    /// particle is within `reach`, m, of any particle beside it.
-    pub fn of(group: &Group, stiffness: Vec<f64>, reach: f64, sim: &SimBuilder<'_>) -> Option<Self> {
+    /// That of a body whose shape is known; its nearest particle is within `reach`, m, of any particle beside
+    /// it. None of a body from a particle file.
+    pub fn of(group: &Group, reach: f64, sim: &SimBuilder<'_>) -> Option<Self> {
+        let shape = Self::of_any(group, Vec::new(), reach, sim);
+        shape.region.is_some().then_some(shape)
+    }
+
+    /// That of any body, with a stiffness of the repulsion of each fluid, N/m.
+    pub fn of_any(group: &Group, stiffness: Vec<f64>, reach: f64, sim: &SimBuilder<'_>) -> Self {
         let body = sim.body(group.body);
         let shape = sim.scene().bodies[body.id.0].shape.cut_part_by_part();
-        let region = shape.region(sim.dimension(), sim.folder(), "shape").ok()?;
-        Some(Self {
+        let region = shape.region(sim.dimension(), sim.folder(), "shape").ok();
+        Self {
             group: group.clone(),
-            region,
             stiffness,
             spacing: body.spacing,
             kind: body.kind,
-            is_worn: false,
+            is_made_of_spheres: region.is_none(),
+            region,
             kept: None,
             reach,
-        })
+        }
     }
 
     /// Looks at the boundary where it is now.
@@ -152,7 +159,7 @@ impl BoundaryShape {
             return motion;
         }
         let records = &cloud.records[self.group.cloud.clone()];
-        self.is_worn = self.is_worn || has_gone(records);
+        self.is_made_of_spheres = self.is_made_of_spheres || has_gone(records);
         let motion = BodyMotion::new(records, reference, self.spacing, cloud.plane);
         self.kept = Some(motion);
         motion
@@ -166,7 +173,7 @@ impl BoundaryShape {
     /// Whether particle `i` is farther than `range`, m, from a body with that motion.
     fn is_beyond(&self, range: f64, cloud: &FlowCloud, i: usize, motion: &BodyMotion) -> bool {
         let place = motion.home(cloud.records[i].position());
-        motion.keeps(cloud.pairs.periodic()) && self.distance(cloud, place) >= range
+        self.region.is_some() && motion.keeps(cloud.pairs.periodic()) && self.distance(cloud, place) >= range
     }
 
     /// Where particle `i` is, none if it is beside no particle of the body; `reference` are the places of its
@@ -190,7 +197,7 @@ impl BoundaryShape {
         if offset(nearest).length() > self.reach {
             return None;
         }
-        if self.is_worn {
+        if self.is_made_of_spheres {
             return Some(self.beside(cloud, nearest, offset(nearest)));
         }
         let origin = reference[nearest as usize - self.group.cloud.start].0;
@@ -256,14 +263,17 @@ impl BoundaryShape {
         PlaceInBody { at: -offset.normalize_or_zero(), distance, map: DMat3::IDENTITY, shares }
     }
 
-    /// Distance from the shape or from its nearest periodic image, m, exact up to the reach.
+    /// Distance from the shape or from its nearest periodic image, m, exact up to the reach; infinite without
+    /// a known shape.
     pub fn distance(&self, cloud: &FlowCloud, at: DVec3) -> f64 {
-        self.least_of_images(cloud, at, |x| self.region.clearance(x))
+        let Some(region) = &self.region else { return f64::INFINITY };
+        self.least_of_images(cloud, at, |x| region.clearance(x))
     }
 
     /// A bound of that distance, m, which takes less time: its sign is exact, and it is no larger.
     pub fn distance_bound(&self, cloud: &FlowCloud, at: DVec3) -> f64 {
-        self.least_of_images(cloud, at, |x| self.region.distance(x))
+        let Some(region) = &self.region else { return f64::INFINITY };
+        self.least_of_images(cloud, at, |x| region.distance(x))
     }
 
     /// The least distance of a place and of its periodic images that the body may be near.

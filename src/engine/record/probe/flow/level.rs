@@ -107,7 +107,8 @@ fn water_levels(cloud: &FlowCloud, at: DVec3, up: DVec3) -> [f64; 2] {
 fn near_line(cloud: &FlowCloud, at: DVec3, up: DVec3) -> Vec<NearLine> {
     let support = cloud.kernel.support;
     let offset = |record: &FlowParticle| cloud.offset(at, record.position());
-    let there = || cloud.records().iter().enumerate().filter(|(_, record)| record.volume() > 0.0);
+    let rows = || (0..cloud.fluid).chain(cloud.boundaries_once()).map(|row| (row, &cloud.records()[row]));
+    let there = || rows().filter(|(_, record)| record.volume() > 0.0);
     let shifts = shifts_to_line(up, there().map(|(_, record)| offset(record)), support, cloud.periodic());
     let of = |(row, record): (usize, &FlowParticle), shift: DVec3| {
         let offset = offset(record) + shift;

@@ -131,14 +131,15 @@ impl SensorGauge {
     fn acceleration(&self, near: &NearFace<'_>) -> DVec3 {
         let NearFace { cloud, face, walls, .. } = near;
         let middle = face.points.iter().sum::<DVec3>() / face.points.len() as f64;
-        let Some(wall) = nearest(cloud, walls, middle) else { return DVec3::ZERO };
-        let wall = &cloud.records()[wall];
+        let Some(nearest) = nearest(cloud, walls, middle) else { return DVec3::ZERO };
+        let row = cloud.row_facing(nearest, face.normal);
+        let wall = &cloud.records()[row];
         let (mut total, mut pressure, mut moment) = (0.0, 0.0, 0.0);
         for i in 0..cloud.fluid {
             let record = &cloud.records()[i];
             let x = cloud.offset(wall.position(), record.position());
             let weight = record.volume() * cloud.kernel.value(x.length());
-            if weight > 0.0 {
+            if weight > 0.0 && cloud.row_facing(row, x) == row {
                 let mass = density(cloud, i) * x;
                 total += weight;
                 pressure += weight * (record.pressure() - (self.gravity + cloud.load(i)).dot(mass));
@@ -169,11 +170,7 @@ impl<'a> NearFace<'a> {
             record.volume() > 0.0 && face.points.iter().any(is_near)
         };
         let fluid = (0..cloud.fluid).filter(near).collect();
-        // A thin body is there twice.
-        let once = cloud.groups.iter().enumerate().filter(|(k, group)| {
-            group.fluid().is_none() && cloud.groups[..*k].last().is_none_or(|last| last.body != group.body)
-        });
-        let walls = once.flat_map(|(_, group)| group.cloud.clone()).filter(near).collect();
+        let walls = cloud.boundaries_once().filter(near).collect();
         Self { cloud, face, fluid, walls, acceleration: DVec3::ZERO }
     }
 }

@@ -62,6 +62,22 @@ fn the_level_in_a_tank_is_where_the_water_ends() {
     near(&first(&scene("at: (0.4, 0.6)")), &[("level", 0.0), ("wet", 0.0)], 1e-12);
 }
 
+/// A plate two spacings thick, whose sides have pressures of their own, stands out of the water.
+#[test]
+fn the_level_beside_a_thin_plate_is_that_of_the_water() {
+    let plate = r#"(name: "plate", material: "rubber", shape: Box(min: (0.5, 0), max: (0.55, 0.7)), spacing: 0.025, formulation: TotalLagrangian)"#;
+    let water = WATER.replace(
+        "Box(min: (0, 0), max: (1, 0.5))",
+        "Difference(Box(min: (0, 0), max: (1, 0.5)), Box(min: (0.5, 0), max: (0.55, 0.7)))",
+    );
+    for x in [0.49, 0.485, 0.565, 0.58] {
+        let level = at("WaterLevel()", &format!("at: ({x}, 0)"));
+        let bodies = format!("{water}, {TANK}, {plate}");
+        let found = first(&text(&bodies, r#""0", "0""#, "(0, -9.81)", &level));
+        near(&found, &[("level", 0.5), ("wet", 0.5)], 0.003);
+    }
+}
+
 #[test]
 fn a_sensor_shows_the_weight_of_the_water_above_it() {
     let scene = |place: &str, sensor: &str| {
@@ -138,6 +154,26 @@ fn gauges_that_follow_a_tank_show_what_they_show_at_rest() {
     // The wall slides along itself below this one.
     let (_, floor, warnings) = scene("PressureSensor(normal: (0, 1))", "at: (0.6, 0)");
     assert!((floor[0] - 4905.0).abs() < 50.0 && left(&warnings) == 0, "{floor:?} {warnings:?}");
+}
+
+/// Water stands higher on one side of a thin plate, whose sides have pressures of their own.
+#[test]
+fn a_sensor_that_follows_a_thin_plate_shows_the_pressure_on_its_side() {
+    let plate = r#"(name: "plate", material: "rubber", shape: Box(min: (0.5, 0), max: (0.55, 0.7)), spacing: 0.025, formulation: Rigid())"#;
+    let water = WATER.replace(
+        "Box(min: (0, 0), max: (1, 0.5))",
+        "Union([Box(min: (0, 0), max: (0.5, 0.5)), Box(min: (0.55, 0), max: (1, 0.25))])",
+    );
+    let fix = r#"conditions: [Fix(on: Select(body: "plate")), "#;
+    for (x, normal, wanted) in [(0.5, -1, 9810.0 * 0.4), (0.55, 1, 9810.0 * 0.15)] {
+        let sensor = format!("PressureSensor(diameter: 0.05, normal: ({normal}, 0))");
+        for follows in ["", r#", follows: "plate""#] {
+            let probe = at(&sensor, &format!("at: ({x}, 0.1){follows}"));
+            let text = text(&format!("{water}, {TANK}, {plate}"), r#""0", "0""#, "(0, -9.81)", &probe);
+            let found = first(&text.replace("conditions: [", fix));
+            assert!((found[0].1 - wanted).abs() < 0.02 * 9810.0 * 0.4, "{x} {follows} {found:?} {wanted}");
+        }
+    }
 }
 
 /// A tank that is lifted at half of gravity, and water that starts with the pressure of one and a half: the

@@ -72,7 +72,7 @@ impl WallWatch {
                 let x = cloud.offset(at, cloud.records()[*i].position());
                 x.length_squared() < reach * reach
             };
-            let walls: Vec<usize> = (cloud.fluid..cloud.records().len()).filter(is_near).collect();
+            let walls: Vec<usize> = cloud.boundaries_once().filter(is_near).collect();
             let share = |&i: &usize| {
                 let record = &cloud.records()[i];
                 record.volume() * cloud.kernel.value(cloud.offset(at, record.position()).length())

@@ -25,8 +25,7 @@ pub struct WallShapes {
 impl WallShapes {
     /// Those of a flow with at least two known shapes.
     pub fn new(groups: &[Group], sim: &SimBuilder<'_>) -> Option<Self> {
-        // Nothing is repelled here.
-        let shape = |group| BoundaryShape::of(group, Vec::new(), 2.0 * sim.body(group.body).spacing, sim);
+        let shape = |group| BoundaryShape::of(group, 2.0 * sim.body(group.body).spacing, sim);
         let shapes: Vec<BoundaryShape> = Self::candidates(groups).filter_map(shape).collect();
         let rows = shapes.iter().map(|shape| shape.group.cloud.clone()).collect();
         let beside = vec![Vec::new(); shapes.len()];

@@ -35,8 +35,7 @@ impl WallEnds {
     /// That of the walls without suction of a flow; none without such walls.
     pub fn new(groups: &[Group], sim: &SimBuilder<'_>) -> Option<Self> {
         let walls = groups.iter().filter(|group| group.has_ends());
-        // Nothing is repelled here.
-        let shape = |group| BoundaryShape::of(group, Vec::new(), 0.0, sim);
+        let shape = |group| BoundaryShape::of(group, 0.0, sim);
         let shapes: Vec<BoundaryShape> = walls.filter_map(shape).collect();
         (!shapes.is_empty()).then_some(Self {
             shapes,
