@@ -148,8 +148,8 @@ pub enum Quantity {
         /// Normal of the face, into the fluid.
         normal: Vec3,
     },
-    /// Volume flow rate of the fluids through a plane at `at` \[m3/s\], in two dimensions per metre of width. In
-    /// a periodic domain an oblique plane goes on in the images of the domain.
+    /// Volume flow rate of the fluids through a plane at `at` \[m3/s\], in two dimensions per metre of width.
+    /// In a periodic domain an oblique plane goes on in the images of the domain.
     Flux {
         /// Normal of the plane, in the direction of positive flow.
         normal: Vec3,

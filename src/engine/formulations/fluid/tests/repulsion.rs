@@ -58,8 +58,8 @@ fn rain_in(
 
 pub const WALL: &str = r#"material: "wall", formulation: Wall()"#;
 
-/// Lone particles fall onto `below` at these speeds over that of sound; particles that were torn out of a fluid
-/// have lost density, and are drawn to the wall.
+/// Lone particles fall onto `below` at these speeds over that of sound; particles that were torn out of a
+/// fluid have lost density, and are drawn to the wall.
 fn assert_that_nothing_passes(dimension: usize, falls: [(f64, f64); 4], below: &str) {
     for (speed, density) in falls {
         let velocity = DVec3::new(0.3, -1.0, 0.0).normalize() * speed * SOUND;
@@ -84,8 +84,8 @@ fn lone_particles_do_not_pass_a_wall_and_keep_their_energy() {
     }
 }
 
-/// The particles of such a wall repel as spheres, between which a particle that is drawn to it with half of its
-/// density passes.
+/// The particles of such a wall repel as spheres, between which a particle that is drawn to it with half of
+/// its density passes.
 #[test]
 fn lone_particles_do_not_pass_a_wall_from_a_particle_file() {
     for dimension in [2, 3] {

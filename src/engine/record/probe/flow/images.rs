@@ -33,7 +33,8 @@ pub fn contains_image(region: &dyn Region, place: DVec3, lengths: DVec3) -> bool
 }
 
 /// The period, m, over which a plane with that unit normal goes on into the next image: of several axes that
-/// it crosses the one nearest to the normal, so that it has one period of the others. Zero if it crosses none.
+/// it crosses the one nearest to the normal, so that it has one period of the others. Zero if it crosses
+/// none.
 pub fn crossed_period(normal: DVec3, periodic: &Periodic, spacing: f64) -> DVec3 {
     let lengths = periodic.lengths();
     let crosses = |axis: &usize| (normal[*axis] * lengths[*axis]).abs() > PARALLEL * spacing;
