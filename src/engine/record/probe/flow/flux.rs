@@ -63,8 +63,8 @@ impl Measure for FluxGauge {
                     let (image, distance) = (offset + k as f64 * period, distance + k as f64 * rise);
                     let share = (1.0 - distance.abs() / width) / width;
                     let foot = self.at + image - self.normal * distance;
-                    let is_within = |region: &Box<dyn Region>| contains_image(&**region, foot, others);
-                    let counts = share > 0.0 && self.within.as_ref().is_none_or(is_within);
+                    let is_within = |region: &dyn Region| contains_image(region, foot, others);
+                    let counts = share > 0.0 && self.within.as_deref().is_none_or(is_within);
                     if counts { share } else { 0.0 }
                 };
                 let speed = velocity[row].0.dot(self.normal);
