@@ -8,7 +8,7 @@ use common::{all_plugins, eulerian, failing, failing_metals, metals, removal, si
 use meshless::glam::{DMat3, DVec3};
 use meshless::scene::Source;
 use meshless::simulation::{Checkpoint, Simulation};
-use meshless::world::{BodyId, Mass, PlasticStrain, Position, ReferencePosition, Temperature};
+use meshless::world::{BodyId, Mass, PlasticStrain, Position, ReferencePosition, Removed, Temperature};
 
 #[test]
 fn bits_do_not_depend_on_threads_or_on_a_restart() {
@@ -157,6 +157,23 @@ fn a_body_that_comes_apart_as_its_kernels_do_not_reach_is_said() {
     assert!(has_warned(1.6, ""));
     // What can fail may break.
     assert!(!has_warned(1.6, ", failure(criterion: MaximumPrincipalStrain(limit: 9.0))"));
+}
+
+#[test]
+fn a_body_whose_front_leaves_the_domain_has_not_come_apart() {
+    let text = r#"(dimension: Two, domain: (min: (-1, -1), max: (0.12, 1), outside: Remove),
+        materials: {"rubber": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)},
+        bodies: [(name: "block", material: "rubber", shape: Box(min: (0, 0), max: (0.1, 0.1)), spacing: 0.01,
+                  formulation: Eulerian(), plugins: [hourglass_control()], velocity: (10, 0))],
+        time: (end: 0.007))"#;
+    let mut sim = simulation(&Source::new("leaves.ron", text.to_owned()));
+    sim.run(|_| true).expect("a run");
+    let (view, rows) = sim.world().body_view(BodyId(0));
+    let removed = view.read::<Removed>().expect("removed");
+    let gone = rows.filter(|&row| removed[row] != Removed::NO).count();
+    assert!((30..80).contains(&gone), "{gone}");
+    let warnings = sim.warnings();
+    assert!(!warnings.iter().any(|text| text.contains("come apart")), "{warnings:?}");
 }
 
 #[test]

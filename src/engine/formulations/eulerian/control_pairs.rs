@@ -100,9 +100,9 @@ impl ControlPairs<'_> {
         if !rest.is_empty() {
             // What fills the lanes that are left has no weight.
             let mut kernel = FourKernel { weight: Lanes4::ZERO, curvature: [0.0; 4] };
-            for lane in 0..rest.len() {
-                kernel.weight.0[lane] = weight_rest[lane];
-                kernel.curvature[lane] = curvature_rest[lane];
+            for (lane, (weight, curvature)) in weight_rest.iter().zip(curvature_rest).enumerate() {
+                kernel.weight.0[lane] = *weight;
+                kernel.curvature[lane] = *curvature;
             }
             self.add(a, &own, &filled_up(rest), kernel, &mut sums);
         }

@@ -51,6 +51,17 @@ fn is_one_sided(packed: &EulerianRows, row: usize) -> bool {
     })
 }
 
+/// The neighbours of rows that are removed are inside of their body no longer: these do not lay them open as
+/// particles that are drawn apart do.
+pub(super) fn open_beside(packed: &mut EulerianRows, removed: impl Iterator<Item = usize>) {
+    let EulerianRows { lists, inside, .. } = packed;
+    for row in removed {
+        for &j in lists.pairs.row(row) {
+            inside[lists.ghosts.source(j as usize)] = false;
+        }
+    }
+}
+
 /// Says of every body that cannot fail how many of its particles have been laid open; the largest number
 /// counts.
 pub(super) fn warn(phase: PhaseId, packed: &EulerianRows, step: &mut Step<'_>) {

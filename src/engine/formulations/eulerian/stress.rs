@@ -184,8 +184,11 @@ impl Stress {
         }
         let held = self.solids.stored();
         let before = self.forces(step.world, packed)?;
-        self.removed.clear();
-        self.removed.extend((0..removed.len() as u32).filter(|&row| removed[row as usize] != Removed::NO));
+        let gone = (0..removed.len() as u32).filter(|&row| removed[row as usize] != Removed::NO);
+        let gone: Vec<u32> = gone.collect();
+        let new = gone.iter().filter(|row| self.removed.binary_search(row).is_err());
+        separation::open_beside(packed, new.map(|&row| row as usize));
+        self.removed = gone;
         AppliedLosses::write(&mut view.write::<AppliedLosses>()?, Loss::Removed, &self.removed);
         self.pack(step.world, packed)?;
         // States of laws have advanced by this step already.

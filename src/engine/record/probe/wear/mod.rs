@@ -1,5 +1,6 @@
 //! Probes of wear: the volume removed from a body, and the roughness of its surface.
 
+mod pieces;
 mod removed_volume;
 mod resolve;
 mod roughness;

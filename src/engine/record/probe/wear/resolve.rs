@@ -20,7 +20,11 @@ pub fn resolve(
         }
         Quantity::Roughness { normal } => {
             let normal = direction(k, "normal", *normal, sim)?;
-            Box::new(Roughness::new(selected()?, normal, sim))
+            let surface = Roughness::new(selected()?, normal, sim);
+            Box::new(
+                surface
+                    .map_err(|error| vec![Problem::at_path(format!("probes[{k}].on"), error.to_string())])?,
+            )
         }
         _ => return Ok(None),
     }))

@@ -2,15 +2,16 @@
 //!
 //! The columns are a spacing wide. With the height z_k of the highest particle of column k along the normal,
 //! half a spacing included, `Ra = mean |z_k - mean z|`, `Rz = max z_k - min z_k` (ISO 21920). Columns without
-//! particles do not count.
+//! particles do not count, nor what has come off the body.
 
 use glam::DVec3;
 
-use crate::neighbors::Periodic;
+use super::pieces::Pieces;
+use crate::neighbors::{NeighborError, Periodic};
 use crate::plugin::{Selection, SimBuilder};
 use crate::record::probe::measure::Measure;
 use crate::schedule::Resources;
-use crate::world::{Column, MissingColumn, Position, Removed, World};
+use crate::world::{Column, Damage, MissingColumn, Position, Removed, World};
 
 /// A surface that is looked at against its normal.
 pub(super) struct Roughness {
@@ -21,11 +22,15 @@ pub(super) struct Roughness {
     /// Width of the columns, m.
     spacing: f64,
     periodic: Periodic,
+    pieces: Pieces,
 }
 
 impl Roughness {
     /// The surface of a selection as it is at the start.
-    pub fn new(selection: Selection, normal: DVec3, sim: &SimBuilder<'_>) -> Self {
+    ///
+    /// # Errors
+    /// The particles of a body that can fail have no neighbours that could be found.
+    pub fn new(selection: Selection, normal: DVec3, sim: &SimBuilder<'_>) -> Result<Self, NeighborError> {
         let spacing =
             selection.parts.iter().map(|(id, _)| sim.body(*id).spacing).fold(f64::INFINITY, f64::min);
         let directions = if sim.dimension().count() == 2 {
@@ -47,7 +52,8 @@ impl Roughness {
             (direction, low, ((high - low) / spacing).round() as usize + 1)
         };
         let along = directions.into_iter().map(columns).collect();
-        Self { selection, normal, along, spacing, periodic: sim.periodic() }
+        let pieces = Pieces::new(selection.parts.iter().map(|(body, _)| *body), sim)?;
+        Ok(Self { selection, normal, along, spacing, periodic: sim.periodic(), pieces })
     }
 
     /// The column that a place is in.
@@ -70,16 +76,23 @@ impl Measure for Roughness {
     }
 
     fn needs(&self) -> Vec<&'static str> {
-        vec![Position::NAME, Removed::NAME]
+        let mut needs = vec![Position::NAME, Removed::NAME];
+        if !self.pieces.is_empty() {
+            needs.push(Damage::NAME);
+        }
+        needs
     }
 
     fn read(&self, world: &World, _: &Resources) -> Result<Vec<f64>, MissingColumn> {
         let mut heights = vec![f64::NEG_INFINITY; self.along.iter().map(|(.., count)| count).product()];
         for (body, rows) in &self.selection.parts {
             let rows = world.rows_now(*body, rows)?;
-            let (view, _) = world.body_view(*body);
+            let (view, all) = world.body_view(*body);
             let (position, removed) = (view.read::<Position>()?, view.read::<Removed>()?);
-            let there = rows.iter().map(|&row| row as usize).filter(|&row| removed[row] == Removed::NO);
+            let attached = self.pieces.largest(world, *body)?;
+            let is_attached = |row: usize| attached.as_ref().is_none_or(|is| is[row - all.start]);
+            let there = rows.iter().map(|&row| row as usize);
+            let there = there.filter(|&row| removed[row] == Removed::NO && is_attached(row));
             for x in there.map(|row| position[row].0) {
                 if let Some(k) = self.column(self.periodic.wrap(x)).or_else(|| self.column(x)) {
                     heights[k] = heights[k].max(x.dot(self.normal) + 0.5 * self.spacing);
