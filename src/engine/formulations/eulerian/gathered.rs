@@ -14,7 +14,7 @@ pub(super) const BATCH: usize = 64;
 pub(super) const FOURS: usize = BATCH / 4;
 
 /// Records of at most [`BATCH`] neighbours.
-pub(super) trait Batch {
+pub(super) trait NeighborBatch {
     fn arms(&mut self) -> &mut Arms;
 
     /// Puts into vector `n` what a pass needs of four particles beyond [`Arms`].

@@ -51,7 +51,8 @@ impl EulerianLists {
     }
 
     /// Rebuilds the lists if a pair that is not in them may have come within the support, at the end of the
-    /// step or in the middle of it; says whether it did. `velocity`, m/s, has moved the particles for `dt`, s.
+    /// step or in the middle of it, and says whether it did. The particles have moved with `velocity`, m/s,
+    /// for `dt`, s.
     ///
     /// # Errors
     /// The body whose places have no neighbours that could be found.

@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use super::gathered::{Arms, BATCH, Batch, FOURS, MomentSums, velocities, weighted};
+use super::gathered::{Arms, BATCH, FOURS, MomentSums, NeighborBatch, velocities, weighted};
 use super::particle::EulerianParticle;
 use super::within::Center;
 use crate::kernels::{Kernel, KernelProfile, KernelVisitor, ProfiledKernel, ScaledKernel};
@@ -166,7 +166,7 @@ struct NearBatch {
     curvatures: [f32; BATCH],
 }
 
-impl Batch for NearBatch {
+impl NeighborBatch for NearBatch {
     #[inline(always)]
     fn arms(&mut self) -> &mut Arms {
         &mut self.arms

@@ -7,7 +7,7 @@
 use glam::{DMat3, DVec3};
 
 use super::dilatation::{DilatationRate, gradient};
-use super::gathered::{Arms, BATCH, Batch, FOURS, MomentSums, velocities, weighted};
+use super::gathered::{Arms, BATCH, FOURS, MomentSums, NeighborBatch, velocities, weighted};
 use super::near::{MIN_SPREAD, NeighborRows};
 use super::particle::EulerianParticle;
 use super::rows::{EulerianRows, PointColumns};
@@ -202,7 +202,7 @@ struct RateBatch {
     weights: [[f64; 4]; FOURS],
 }
 
-impl Batch for RateBatch {
+impl NeighborBatch for RateBatch {
     #[inline(always)]
     fn arms(&mut self) -> &mut Arms {
         &mut self.arms
