@@ -10,7 +10,7 @@ use meshless_engine::parallel::{Arithmetic, Matrix, Number};
 use meshless_engine::plugin::{SetupError, SimBuilder};
 use meshless_engine::solids::{FoldedEnergy, FoldedRows, FoldedTerm, FoldedTermOfBodies};
 use meshless_engine::world::{
-    BodyId, BodySet, Column, ColumnSet, Damage, DeformationGradient, HourglassGradient, HourglassModulus,
+    BodyId, BodySet, Column, Damage, DeformationGradient, HourglassGradient, HourglassModulus,
 };
 
 use crate::ganzenmueller_2015::Ganzenmueller2015;
@@ -19,9 +19,8 @@ use crate::viscous::Viscous;
 
 /// Whether the material of a body can fail.
 pub fn can_fail(sim: &SimBuilder<'_>, id: BodyId) -> Result<bool, SetupError> {
-    let mut state = ColumnSet::default();
-    sim.body(id).solid_law()?.state(&mut state);
-    Ok(state.get(Damage::NAME).is_some())
+    let body = sim.body(id);
+    body.solid_law().map(|_| body.can_fail())
 }
 
 /// Adds a pair form to a body that can fail.

@@ -170,7 +170,7 @@ pub enum Quantity {
     /// Roughness of the surface of the selection, seen against its normal, from the highest particle of every
     /// column that is a spacing wide \[m\]: the arithmetic mean deviation `Ra` from the mean height, the
     /// difference `Rz` of the maximum and the minimum height, and the mean height. Of a body that can fail it
-    /// is the surface of the largest piece of what has not failed.
+    /// is the surface of the largest piece of what has not failed, of each part of the body.
     Roughness {
         /// Outward normal of the surface.
         normal: Vec3,

@@ -46,7 +46,7 @@ pub(super) trait NeighborBatch {
     }
 }
 
-/// Their velocities and present volumes.
+/// Velocities and present volumes of four particles.
 #[inline(always)]
 pub(super) fn velocities(of: [&EulerianParticle; 4]) -> [Lanes4; 4] {
     [of[0].velocity, of[1].velocity, of[2].velocity, of[3].velocity]

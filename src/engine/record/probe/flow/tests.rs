@@ -62,10 +62,17 @@ fn the_level_in_a_tank_is_where_the_water_ends() {
     near(&first(&scene("at: (0.4, 0.6)")), &[("level", 0.0), ("wet", 0.0)], 1e-12);
 }
 
-/// A plate two spacings thick, whose sides have pressures of their own, stands out of the water.
+/// A plate two spacings thick, whose sides have pressures of their own.
+fn plate(formulation: &str) -> String {
+    format!(
+        r#"(name: "plate", material: "rubber", shape: Box(min: (0.5, 0), max: (0.55, 0.7)), spacing: 0.025, formulation: {formulation})"#
+    )
+}
+
+/// It stands out of the water.
 #[test]
 fn the_level_beside_a_thin_plate_is_that_of_the_water() {
-    let plate = r#"(name: "plate", material: "rubber", shape: Box(min: (0.5, 0), max: (0.55, 0.7)), spacing: 0.025, formulation: TotalLagrangian)"#;
+    let plate = plate("TotalLagrangian");
     let water = WATER.replace(
         "Box(min: (0, 0), max: (1, 0.5))",
         "Difference(Box(min: (0, 0), max: (1, 0.5)), Box(min: (0.5, 0), max: (0.55, 0.7)))",
@@ -156,10 +163,10 @@ fn gauges_that_follow_a_tank_show_what_they_show_at_rest() {
     assert!((floor[0] - 4905.0).abs() < 50.0 && left(&warnings) == 0, "{floor:?} {warnings:?}");
 }
 
-/// Water stands higher on one side of a thin plate, whose sides have pressures of their own.
+/// Water stands higher on one side of a thin plate.
 #[test]
 fn a_sensor_that_follows_a_thin_plate_shows_the_pressure_on_its_side() {
-    let plate = r#"(name: "plate", material: "rubber", shape: Box(min: (0.5, 0), max: (0.55, 0.7)), spacing: 0.025, formulation: Rigid())"#;
+    let plate = plate("Rigid()");
     let water = WATER.replace(
         "Box(min: (0, 0), max: (1, 0.5))",
         "Union([Box(min: (0, 0), max: (0.5, 0.5)), Box(min: (0.55, 0), max: (1, 0.25))])",
