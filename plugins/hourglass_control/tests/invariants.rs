@@ -94,3 +94,24 @@ fn a_thrown_and_spinning_body_keeps_momentum_and_energy() {
         Ok(())
     });
 }
+
+#[test]
+fn round_off_of_a_body_at_rest_is_no_reason_to_warn() -> Result<(), Box<dyn Error>> {
+    for formulation in ["TotalLagrangian", "UpdatedLagrangian()", "Eulerian()"] {
+        let text = format!(
+            r#"(dimension: Two,
+                materials: {{"steel": NeoHookean(density: 7800, young: 2e11, poisson: 0.3)}},
+                bodies: [(name: "b", material: "steel", shape: Box(min: (0, 0), max: (1.0, 0.5)), spacing: 0.05,
+                          formulation: {formulation}, plugins: [{VARIATIONAL}])],
+                conditions: [InitialDisplacement(on: Select(body: "b"), value:
+                    ("cos(0.7)*x - sin(0.7)*y - x + 3", "sin(0.7)*x + cos(0.7)*y - y"))],
+                time: (end: 2e-3))"#
+        );
+        let (scene, source) = parse(Source::new("test.ron", text))?;
+        let mut sim = build(&scene, &source, &Registry::standard().with(hourglass_control::register))?;
+        sim.run(|_| true)?;
+        let warnings = sim.finish()?.warnings;
+        assert!(warnings.is_empty(), "{formulation}: {warnings:?}");
+    }
+    Ok(())
+}

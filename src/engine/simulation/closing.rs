@@ -81,10 +81,11 @@ impl Simulation {
         Ok(summary)
     }
 
-    /// The run has used more energy than it can account for.
+    /// The run has used more energy than it can account for, and more than round-off.
     fn warn_of_balance(&mut self) {
         let error = self.ledger.relative_error();
-        if error.abs() > BALANCE_WARNING && self.failure.is_none() {
+        let is_round_off = self.ledger.balance_error().abs() <= self.ledger.resolution();
+        if error.abs() > BALANCE_WARNING && !is_round_off && self.failure.is_none() {
             let text = format!(
                 "energy balance error: {:.2} % of the peak energy ({})",
                 100.0 * error,

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::remedies::Remedies;
 use crate::materials::Law;
-use crate::plugin::{BodyPlan, SimBuilder};
+use crate::plugin::BodyPlan;
 use crate::schedule::{AccountKind, CommonMotion, Ledger, Step, StepError};
 use crate::world::{BodyId, World};
 
@@ -58,16 +58,15 @@ impl EnergyGrowth {
     }
 }
 
-/// Energy that solids may seem to hold by round-off, J: that of their Young's moduli over their volumes, to a
-/// few digits.
-pub(super) fn resolution(sim: &SimBuilder<'_>) -> f64 {
-    let of = |body: &BodyPlan| match &body.material.law {
+/// Energy that a body may seem to hold by round-off, J: of a solid that of its Young's modulus over its
+/// volume, to a few digits.
+pub(super) fn resolution(body: &BodyPlan) -> f64 {
+    match &body.material.law {
         Law::Solid(law) => {
             law.elastic().young * body.sites.iter().map(|site| site.volume).sum::<f64>() * DIGITS
         }
         _ => 0.0,
-    };
-    sim.bodies().iter().map(of).sum()
+    }
 }
 
 /// The account and body with the most energy; of equal ones the first.

@@ -3,6 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::energy_growth::resolution;
 use crate::notation::quantity;
 use crate::plugin::{BodyPlan, SimBuilder};
 use crate::schedule::{Account, Ledger, Step};
@@ -33,15 +34,21 @@ pub(super) struct HourglassShare {
     largest: Vec<f64>,
     /// Volume of each body, m3.
     volumes: Vec<f64>,
+    /// Energy of each body below which all is round-off, J.
+    resolution: Vec<f64>,
     /// Largest hourglass energy of each body after the first load, J, and when it was, s.
     most: Vec<(f64, f64)>,
 }
 
 impl HourglassShare {
-    /// Over the volumes of the bodies.
+    /// Over the volumes and moduli of the bodies.
     pub fn new(sim: &SimBuilder<'_>) -> Self {
         let volume = |body: &BodyPlan| body.sites.iter().map(|site| site.volume).sum();
-        Self { volumes: sim.bodies().iter().map(volume).collect(), ..Self::default() }
+        Self {
+            volumes: sim.bodies().iter().map(volume).collect(),
+            resolution: sim.bodies().iter().map(resolution).collect(),
+            ..Self::default()
+        }
     }
 
     /// Takes in a step.
@@ -81,7 +88,8 @@ impl HourglassShare {
             if internal <= 0.0 || internal <= REACHED * densest * self.volumes[k] {
                 continue;
             }
-            let is_large = |energy: f64| energy > SHARE * internal && energy > MIN_ENERGY * self.largest[k];
+            let least = self.resolution[k].max(MIN_ENERGY * self.largest[k]);
+            let is_large = |energy: f64| energy > least.max(SHARE * internal);
             let (name, percent) = (&body.name, |energy: f64| 100.0 * energy / internal);
             let (hourglass, time) = self.most[k];
             if is_large(hourglass) {

@@ -46,7 +46,7 @@ pub fn add_system(sim: &mut SimBuilder<'_>) {
     let domain = DomainCheck::of_scene(sim);
     let watchdog = Watchdog {
         energy: EnergyGrowth::default(),
-        resolution: resolution(sim),
+        resolution: sim.bodies().iter().map(resolution).sum(),
         hourglass: HourglassShare::new(sim),
         wrong_sign: WrongSign::new(sim),
         passing: PassingBodies::new(sim),

@@ -76,8 +76,10 @@ impl WrongSign {
                 self.accounts.len() - 1
             });
             let given = &mut self.accounts[k];
-            given.looks = if share > worth { given.looks + 1 } else { 0 };
-            if share <= worth.max(GROWTH * given.told) || (given.looks < LOOKS && !at_end) {
+            // Less than round-off of the stored energies is nothing.
+            let is_much = share > worth && -account.total() > step.ledger.resolution();
+            given.looks = if is_much { given.looks + 1 } else { 0 };
+            if !is_much || share <= GROWTH * given.told || (given.looks < LOOKS && !at_end) {
                 continue;
             }
             given.told = share;
