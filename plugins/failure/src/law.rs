@@ -15,7 +15,9 @@ use glam::DMat3;
 use meshless_engine::linalg::Sym3;
 use meshless_engine::materials::{ElasticConstants, SolidLaw, StateRows, StressRows, Stretches};
 use meshless_engine::parallel::BLOCK;
-use meshless_engine::world::{ColumnSet, Damage, PlasticStrain, Temperature};
+use meshless_engine::world::{
+    Column, ColumnSet, Damage, InternalEnergy, PlasticStrain, PlasticWork, Temperature,
+};
 
 use crate::criterion::{CriterionInput, WatchedCriterion};
 use crate::softening::{AfterFailure, at_volume, cauchy, cofactor};
@@ -27,6 +29,8 @@ pub(crate) struct FailingLaw {
     /// Growth of the cube root of damage where the criterion is met, 1/s.
     growth: f64,
     then: AfterFailure,
+    /// Whether the pressure of the wrapped law depends on the energy that plastic work brings.
+    keeps_energy: bool,
 }
 
 /// The columns of the law, block by block.
@@ -40,10 +44,12 @@ struct LawColumns<'a> {
     mean: &'a mut [FailedStress],
     /// Where plastic work heats, or the criterion depends on it.
     temperature: Option<&'a mut [Temperature]>,
+    /// Where plastic work adds to the pressure.
+    energies: Option<(&'a mut [InternalEnergy], &'a mut [PlasticWork])>,
 }
 
 impl<'a> LawColumns<'a> {
-    fn take(state: &mut StateRows<'a>, has_temperature: bool) -> Self {
+    fn take(state: &mut StateRows<'a>, has_temperature: bool, keeps_energy: bool) -> Self {
         Self {
             damage: state.take(),
             index: state.take(),
@@ -53,13 +59,17 @@ impl<'a> LawColumns<'a> {
             volume: state.take(),
             mean: state.take(),
             temperature: has_temperature.then(|| state.take()),
+            energies: keeps_energy.then(|| (state.take(), state.take())),
         }
     }
 }
 
 impl FailingLaw {
     pub fn new(watch: WatchedCriterion, inner: Arc<dyn SolidLaw>, growth: f64, then: AfterFailure) -> Self {
-        Self { watch, inner, growth, then }
+        let mut columns = ColumnSet::default();
+        inner.state(&mut columns);
+        let keeps_energy = columns.get(InternalEnergy::NAME).is_some();
+        Self { watch, inner, growth, then, keeps_energy }
     }
 
     /// Damage after a step of length `dt`, s, in which the criterion is met.
@@ -111,6 +121,10 @@ impl FailingLaw {
         rows.plastic_work[k] -= lost;
         if let Some(temperature) = &mut own.temperature {
             temperature[k].0 -= self.inner.plastic_heating() * lost;
+        }
+        if let Some((internal, plastic)) = &mut own.energies {
+            internal[k].0 -= lost;
+            plastic[k].0 -= lost;
         }
         rows.modulus[k] *= 1.0 - damage;
         if rows.dt > 0.0 {
@@ -205,7 +219,7 @@ impl SolidLaw for FailingLaw {
         let mut all = std::mem::take(&mut rows.state);
         let mut state = all.reborrow();
         let has_temperature = self.watch.temperature || self.inner.plastic_heating() > 0.0;
-        let mut own = LawColumns::take(&mut state, has_temperature);
+        let mut own = LawColumns::take(&mut state, has_temperature, self.keeps_energy);
         let now = self.watch.plastic.then(|| state.take::<PlasticStrain>());
         for k in 0..n {
             if own.damage[k].0 >= 1.0 {

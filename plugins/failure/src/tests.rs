@@ -3,9 +3,9 @@
 use glam::DMat3;
 use meshless_engine::materials::{
     DecoupledNeoHookean, Hardening, Heating, Hypoelastic, J2, Law, MAX_STATE, Material, MaterialModel,
-    NeoHookean, SolidLaw, StateColumns, StateRows, StressRows,
+    NeoHookean, SolidEos, SolidLaw, StateColumns, StateRows, StressRows,
 };
-use meshless_engine::world::{ColumnSet, Damage, Temperature};
+use meshless_engine::world::{ColumnSet, Damage, InternalEnergy, Temperature};
 
 use crate::criterion::{Criterion, WatchedCriterion};
 use crate::johnson_cook::JohnsonCookFailure;
@@ -130,7 +130,9 @@ fn a_particle_heats_by_the_plastic_work_that_damage_leaves() {
     let heating = Heating { specific_heat: Some(heat), taylor_quinney: 0.9, temperature: 300.0 };
     let (bulk, shear) = (Some(BULK), Some(SHEAR));
     let hardening = Hardening::Perfect { yield_stress };
-    let (young, poisson, heating, eos) = (None, None, Some(heating), None);
+    let (young, poisson, heating) = (None, None, Some(heating));
+    // The internal energy of this one is the heat, as the volume stays what it was.
+    let eos = Some(SolidEos::MieGrueneisen { sound_speed: None, slope: 1.4, gamma: 2.0 });
     let j2 = J2 { density, young, poisson, bulk, shear, hardening, heating, eos }.build();
     let hypoelastic =
         Hypoelastic { density, young, poisson, bulk, shear, hardening: Some(hardening), heating, eos }
@@ -145,6 +147,12 @@ fn a_particle_heats_by_the_plastic_work_that_damage_leaves() {
         let rise = specimen.with_state(|_, mut state| state.take::<Temperature>()[0].0) - 300.0;
         let wanted = 0.9 * specimen.plastic_work / (density * heat);
         assert!(wanted > 0.0 && (rise / wanted - 1.0).abs() < 1e-9, "{rise} {wanted}");
+        let internal = specimen.with_state(|_, mut state| state.take::<InternalEnergy>()[0].0);
+        assert!(
+            (internal / specimen.plastic_work - 1.0).abs() < 1e-9,
+            "{internal} {}",
+            specimen.plastic_work
+        );
     }
 }
 
