@@ -6,6 +6,7 @@
 //! part also acts on receding pairs (Sun et al., Comput. Methods Appl. Mech. Engrg. 315 (2017) 25-49).
 
 use meshless_engine::materials::ParameterError;
+use meshless_engine::notation::quantity;
 use meshless_engine::pair::{Pair, PairTerm, Rates};
 use meshless_engine::parallel::Arithmetic;
 use meshless_engine::plugin::{BodyKind, Offer, Plugin, Registry, SetupError, SimBuilder};
@@ -80,8 +81,10 @@ impl ArtificialViscosity {
         if reynolds < MIN_REYNOLDS {
             let text = format!(
                 "`artificial_viscosity(alpha: {})` dominates the flow of `{}`: beside it a flow with a tenth of the speed of sound has a \
-                 Reynolds number of {reynolds:.0} over the {length:.3} m of the body; `alpha: 0.02, beta: 0.0` is usual for fluids",
-                self.alpha, body.name
+                 Reynolds number of {reynolds:.0} over the {} of the body; `alpha: 0.02, beta: 0.0` is usual for fluids",
+                self.alpha,
+                body.name,
+                quantity(length, "m")
             );
             sim.warn(text);
         }

@@ -130,13 +130,14 @@ impl Mach {
         name: &str,
         step: &mut Step<'_>,
     ) -> Result<(), StepError> {
-        let (sound, mach) = (state.sound_speed, speed / state.sound_speed);
+        let mach = speed / state.sound_speed;
         if mach <= FAST.max(GROWTH * self.told) {
             return Ok(());
         }
+        let (found, sound) = (quantity(speed, "m/s"), quantity(state.sound_speed, "m/s"));
         if mach >= 1.0 {
             let message = format!(
-                "the flow of `{name}` has reached {speed:.4} m/s at {}, faster than its sound of {sound:.4} m/s: it no longer behaves as a liquid; \
+                "the flow of `{name}` has reached {found} at {}, faster than its sound of {sound}: it no longer behaves as a liquid; \
                  give ten times the largest speed of the flow as `sound_speed` of its material",
                 quantity(step.clock.time, "s")
             );
@@ -144,10 +145,10 @@ impl Mach {
         }
         let begin = format!("the flow of `{name}` has reached ");
         let text = format!(
-            "{begin}a Mach number of {mach:.2}, {speed:.4} m/s with a speed of sound of {sound:.4} m/s: its density changes by {:.0} %, where it \
-             should by 1 %; a `sound_speed` of some {:.3} m/s would be right, at smaller steps",
+            "{begin}a Mach number of {mach:.2}, {found} with a speed of sound of {sound}: its density changes by {:.0} %, where it \
+             should by 1 %; a `sound_speed` of some {} would be right, at smaller steps",
             100.0 * mach * mach,
-            10.0 * speed
+            quantity(10.0 * speed, "m/s")
         );
         replace_warning(step.warnings, &begin, text);
         self.told = mach;

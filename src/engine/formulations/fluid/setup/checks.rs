@@ -7,7 +7,7 @@ use crate::formulations::fluid::density::{relative_speed, wall_frame};
 use crate::formulations::fluid::lists::{Thickness, Thin};
 use crate::formulations::fluid::walls::WallBody;
 use crate::neighbors::Periodic;
-use crate::notation::{number, place, quantity};
+use crate::notation::{place, quantity};
 use crate::plugin::{BodyPlan, SetupError, SimBuilder};
 use crate::scene::Problem;
 
@@ -65,15 +65,15 @@ pub fn sound_is_fast(group: &Group, at: DVec3, p: f64, rho: f64, name: &str) -> 
         return Ok(());
     }
     let message = format!(
-        "the pressure of {} at {} changes the density of `{name}` by {:.0} %: its speed of sound of {} m/s is too low",
+        "the pressure of {} at {} changes the density of `{name}` by {:.0} %: its speed of sound of {} is too low",
         quantity(p, "Pa"),
         place(at),
         100.0 * change,
-        number(state.sound_speed)
+        quantity(state.sound_speed, "m/s")
     );
     let fast = 10.0 * (2.0 * p.abs() / state.density).sqrt();
     let problem = Problem::at_path(format!("bodies[{}].material", group.body.0), message);
-    let help = format!("leave `sound_speed` of the material out, or give some {fast:.3} m/s");
+    let help = format!("leave `sound_speed` of the material out, or give some {}", quantity(fast, "m/s"));
     Err(SetupError::Problems(vec![problem.help(help)]))
 }
 

@@ -108,12 +108,12 @@ fn text(group: &Group, state: &FluidState, deviation: f64, step: &Step<'_>) -> (
     let begin = format!("`{}` is compressed unevenly: ", step.world.body(group.body).name);
     let text = format!(
         "{begin}its density varies by {:.0} % (standard deviation) at {}, where that of a liquid hardly changes; pressures of {} need a larger `sound_speed` of its material, \
-         some {:.3} m/s in the place of {:.3} m/s, at smaller steps",
+         some {} in the place of {}, at smaller steps",
         100.0 * deviation,
         quantity(step.clock.time, "s"),
         quantity(deviation * state.bulk_modulus(), "Pa"),
-        state.sound_speed * (deviation / USUAL).sqrt(),
-        state.sound_speed,
+        quantity(state.sound_speed * (deviation / USUAL).sqrt(), "m/s"),
+        quantity(state.sound_speed, "m/s"),
     );
     (begin, text)
 }
