@@ -1,8 +1,8 @@
 //! Loops over blocks of particles, in eight lanes of single precision.
 
 use super::arithmetic::{EightLanes, FourLanes};
-use super::path::{HotLoop, run_wide};
-use super::plane::InPlane;
+use super::path::HotLoop;
+use super::plane::run_hot_on;
 
 /// A loop over blocks that is compiled once for every instruction path, with the same requirements as
 /// [`HotLoop`].
@@ -27,5 +27,5 @@ impl<L: BlockLoop> HotLoop for Wide<L> {
 /// Runs a loop over blocks on the best path of this processor, with vectors of two or three components.
 #[inline]
 pub fn run_blocks_on<L: BlockLoop>(plane: bool, hot: L) -> L::Output {
-    if plane { run_wide(InPlane(Wide(hot))) } else { run_wide(Wide(hot)) }
+    run_hot_on(plane, Wide(hot))
 }

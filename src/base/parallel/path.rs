@@ -86,15 +86,7 @@ mod paths {
             match self {
                 Self::Baseline => hot.run(Portable),
                 Self::V3(v3) => v3.vectorize(WithV3(hot, v3)),
-                Self::V4(v4) => (*v4).vectorize(WithV3(hot, *v4)),
-            }
-        }
-
-        #[inline]
-        pub fn run_wide<L: HotLoop>(self, hot: L) -> L::Output {
-            match self {
                 Self::V4(v4) => v4.vectorize(WithV3(hot, *v4)),
-                other => other.run(hot),
             }
         }
     }
@@ -121,11 +113,6 @@ mod paths {
         pub fn run<L: HotLoop>(self, hot: L) -> L::Output {
             hot.run(Portable)
         }
-
-        #[inline]
-        pub fn run_wide<L: HotLoop>(self, hot: L) -> L::Output {
-            hot.run(Portable)
-        }
     }
 }
 
@@ -145,17 +132,10 @@ fn names() -> String {
     Path::all().map(Path::name).collect::<Vec<_>>().join(", ")
 }
 
-/// Runs a hot loop over rows on the instruction path of this program. AVX-512 is not used, because gathers
-/// and transposes are no faster with it.
+/// Runs a hot loop on the instruction path of this program.
 #[inline]
 pub fn run_hot<L: HotLoop>(hot: L) -> L::Output {
     path().run(hot)
-}
-
-/// Runs a hot loop over blocks on the instruction path of this program.
-#[inline]
-pub(super) fn run_wide<L: HotLoop>(hot: L) -> L::Output {
-    path().run_wide(hot)
 }
 
 /// Name of the instruction path in use, such as `x86-64-v3`: the best one supported by this processor, unless
