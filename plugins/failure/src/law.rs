@@ -152,7 +152,7 @@ impl SolidLaw for FailingLaw {
     }
 
     fn remembers_path(&self) -> bool {
-        self.inner.remembers_path()
+        true
     }
 
     fn reads_last_stress(&self) -> bool {

@@ -50,6 +50,7 @@ impl Run for Marking {
             for row in rows {
                 let is_debris = removed[row] == Removed::NO
                     && (deformation[row].0.determinant() < *minimum_volume_ratio
+                        || solid.has_lost_its_fit(row)
                         || pieces.is_small(&*solid, row));
                 debris[row] = IsDebris(u32::from(is_debris));
             }

@@ -51,7 +51,7 @@ pub use pair_control::PairControl;
 pub use pairs::SolidPairs;
 pub use phase::{CORRECTED_STRESS, PACKED_SOLID, SolidPhase};
 pub use present::{PresentPair, PresentPairs, PresentVolumes};
-pub use refit::Refits;
+pub use refit::{Refits, change_of_fit};
 pub use row_loops::{count_rows, fill_rows};
 pub use stable_step::StepEstimate;
 pub use support::require_support;

@@ -33,6 +33,11 @@ pub trait SolidPhase: Any + Send + Sync {
     /// removed.
     fn neighbors(&self, row: usize, f: &mut dyn FnMut(usize, f64));
 
+    /// Whether a particle has no deformation gradient since it has lost neighbours: it is no part of a solid.
+    fn has_lost_its_fit(&self, _row: usize) -> bool {
+        false
+    }
+
     /// Whether two particles that are near each other now are neighbours by kernels of the present
     /// configuration, so that contact of a body with itself must leave them out. For kernels of a reference
     /// configuration the distance there decides.

@@ -5,8 +5,16 @@
 //! per cent would put the metal far beyond yield, and energy into the body. Such a law continues where it
 //! was: it sees F_i C_i with C_i = (F_i after the cut)^-1 F_i C_i before it. The force is the gradient of its
 //! energy by F_i, P_i C_i^T.
+//!
+//! A fit that changes by a factor of two has rested on the lost neighbour: what is left of debris measures no
+//! deformation. The energy of a law would jump with it.
 
 use glam::DMat3;
+
+use crate::linalg::{Eigen, Sym3};
+
+/// Largest factor by which the fit may stretch any direction, or shrink it.
+const LARGEST_CHANGE: f64 = 2.0;
 
 /// The factors C of the rows that have one, ascending by row.
 #[derive(Clone, Debug, Default)]
@@ -29,19 +37,25 @@ impl Refits {
         if self.0.is_empty() { &[] } else { &self.0[until(first)..until(first + n)] }
     }
 
-    /// Takes in that the fit of a row has gone from `before` to `after`. A new fit that is inside out
-    /// measures nothing.
-    pub fn take_in(&mut self, row: u32, before: &DMat3, after: &DMat3) {
-        let measures = after.determinant() > 0.0;
-        if !measures {
-            return;
-        }
-        let change = after.inverse() * *before;
+    /// Takes in the change (F after)^-1 (F before) of the fit of a row.
+    pub fn take_in(&mut self, row: u32, change: &DMat3) {
         match self.0.binary_search_by_key(&row, |entry| entry.0) {
-            Ok(k) => self.0[k].1 = change * self.0[k].1,
-            Err(k) => self.0.insert(k, (row, change)),
+            Ok(k) => self.0[k].1 = *change * self.0[k].1,
+            Err(k) => self.0.insert(k, (row, *change)),
         }
     }
+}
+
+/// The change (F after)^-1 (F before) of a fit; none where what is left measures no deformation.
+pub fn change_of_fit(before: &DMat3, after: &DMat3) -> Option<DMat3> {
+    let change = after.inverse() * *before;
+    let limits = LARGEST_CHANGE.powi(-2)..=LARGEST_CHANGE.powi(2);
+    let is_small = |change: &DMat3| {
+        let squares = Eigen::new(&Sym3::symmetric_part(change.transpose() * *change)).values;
+        squares.to_array().iter().all(|square| limits.contains(square))
+    };
+    let measures = after.determinant() > 0.0 && change.determinant() > 0.0;
+    Some(change).filter(|change| measures && is_small(change))
 }
 
 /// Before the law: replaces the columns of a row by the input of the law. The stress column is the one whose
@@ -86,11 +100,12 @@ mod tests {
         let second = DMat3::from_cols_array(&[1.0, 0.2, 0.1, 0.0, 0.95, 0.0, 0.0, 0.1, 1.15]);
         let third = DMat3::from_cols_array(&[0.8, 0.1, 0.1, 0.3, 1.0, 0.0, 0.0, 0.0, 1.0]);
         let mut refits = Refits::default();
-        refits.take_in(9, &third, &first);
-        refits.take_in(4, &first, &second);
-        refits.take_in(4, &second, &third);
-        // Inside out: nothing to be taken in.
-        refits.take_in(4, &third, &-DMat3::IDENTITY);
+        let mut take_in = |row, before, after| {
+            refits.take_in(row, &change_of_fit(before, after).unwrap());
+        };
+        take_in(9, &third, &first);
+        take_in(4, &first, &second);
+        take_in(4, &second, &third);
         assert_eq!(refits.entries().iter().map(|entry| entry.0).collect::<Vec<_>>(), [4, 9]);
         assert_eq!((refits.of_block(0, 4).len(), refits.of_block(4, 6).len()), (0, 2));
         let own = refits.of_block(3, 2);
@@ -102,5 +117,16 @@ mod tests {
         to_column(own, 3, &mut column);
         assert!(deformation[1] == third && column[1].abs_diff_eq(stress[1], 1e-13));
         assert!(deformation[0] == DMat3::IDENTITY && column[0] == DMat3::IDENTITY);
+    }
+
+    #[test]
+    fn a_fit_that_rests_on_one_neighbour_measures_nothing_without_it() {
+        let stretched = |x: f64, y: f64| DMat3::from_diagonal(glam::DVec3::new(x, y, 1.0));
+        let turn = DMat3::from_rotation_z(2.0);
+        assert!(change_of_fit(&(turn * stretched(1.1, 0.9)), &(turn * stretched(0.6, 1.7))).is_some());
+        assert!(change_of_fit(&DMat3::IDENTITY, &stretched(0.49, 1.0)).is_none());
+        assert!(change_of_fit(&DMat3::IDENTITY, &stretched(1.0, 2.1)).is_none());
+        // Inside out.
+        assert!(change_of_fit(&DMat3::IDENTITY, &stretched(-1.0, 1.0)).is_none());
     }
 }

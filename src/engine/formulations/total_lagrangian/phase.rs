@@ -8,6 +8,7 @@ use crate::formulations::bonded::{
     AffineFrame, BodyKernel, BondedMotion, BondedRows, Bonds, Cracks, HessianRows, PackedParticle,
     fill_ghosts,
 };
+use crate::linalg::Sym3;
 use crate::parallel::{BLOCK, own_rows};
 use crate::ranks::Halo;
 use crate::solids::{CorrectedStress, LocalMotion, SolidPhase};
@@ -95,6 +96,11 @@ impl SolidPhase for PackedRows {
 
     fn neighbors(&self, row: usize, f: &mut dyn FnMut(usize, f64)) {
         self.bonds.for_each_present(&self.sites, row, f);
+    }
+
+    fn has_lost_its_fit(&self, row: usize) -> bool {
+        self.bonds.inverse_moment[row] == Sym3::ZERO
+            && self.bonds.row(row).any(|(j, _)| !self.sites[j].is_present())
     }
 
     fn local_motion(

@@ -4,12 +4,13 @@
 use glam::DMat3;
 
 use super::phase::PackedRows;
+use super::removed::RemovedRows;
 use super::system::Deformation;
 use crate::formulations::bonded::{Bonds, InternalForce, PackedParticle};
-use crate::linalg::dyad;
+use crate::linalg::{Sym3, dyad};
 use crate::removal::REMOVED_ENERGY;
 use crate::schedule::{AccountKind, Step, StepError};
-use crate::solids::{AppliedLosses, Loss, SolidPart, count_rows};
+use crate::solids::{AppliedLosses, Loss, SolidPart, change_of_fit, count_rows};
 use crate::world::{
     DeformationGradient, Force, Mass, MissingColumn, ReferencePosition, ReferenceVolume, Removed,
     SupportRadius, World,
@@ -71,7 +72,8 @@ impl Deformation {
         Ok(true)
     }
 
-    /// Takes in how the fits of plastic bodies have changed beside rows that were not `known` to be removed.
+    /// Takes in how the fits have changed beside rows that were not `known` to be removed. Rows of which no
+    /// fit is left carry no stress from now on.
     fn refit(&mut self, world: &World, packed: &mut PackedRows, known: &[u32]) -> Result<(), MissingColumn> {
         let view = world.phase(self.phase);
         let gradient = view.read::<DeformationGradient>()?;
@@ -82,16 +84,25 @@ impl Deformation {
         }
         packed.fill_ghost_sites();
         let PackedRows { bonds, ghosts, sites, .. } = packed;
-        for law in self.solids.iter().filter(|law| law.law.remembers_path()) {
+        let RemovedRows { refits, released, .. } = &mut self.removed;
+        for law in self.solids.iter() {
             for row in world.body(law.id).rows.clone() {
                 let bonds_of = bonds.offsets[row] as usize..bonds.offsets[row + 1] as usize;
                 let is_cut = bonds.neighbors[bonds_of].iter().any(|&j| is_new[ghosts.source(j as usize)]);
-                if is_cut && sites[row].is_present() {
-                    let after = fit_of(row, bonds, sites);
-                    self.removed.refits.take_in(row as u32, &gradient[row].0, &after);
+                if !is_cut || !sites[row].is_present() || bonds.inverse_moment[row] == Sym3::ZERO {
+                    continue;
+                }
+                match change_of_fit(&gradient[row].0, &fit_of(row, bonds, sites)) {
+                    Some(change) if law.law.remembers_path() => refits.take_in(row as u32, &change),
+                    Some(_) => {}
+                    None => {
+                        released.push(row as u32);
+                        bonds.release(row);
+                    }
                 }
             }
         }
+        released.sort_unstable();
         Ok(())
     }
 
@@ -129,6 +140,8 @@ impl Deformation {
         for (law, stable_step) in self.solids.iter().zip(stable_step) {
             let rows = world.body(law.id).rows.clone();
             bonds.correct(rows.clone(), dimension, bytemuck::cast_slice(&reference), &volume, ghosts);
+            let released = self.removed.released.iter().map(|&row| row as usize);
+            released.filter(|row| rows.contains(row)).for_each(|row| bonds.release(row));
             *stable_step =
                 bonds.stable_step(rows, dimension, &law.estimate, bytemuck::cast_slice(&support), None);
         }

@@ -7,8 +7,10 @@ use crate::solids::Refits;
 pub(super) struct RemovedRows {
     /// Ascending.
     pub rows: Vec<u32>,
-    /// Corrections of F for the laws of plastic bodies.
+    /// Corrections of F for laws that depend on the path.
     pub refits: Refits,
+    /// Rows without a deformation gradient since they have lost a neighbour, ascending.
+    pub released: Vec<u32>,
 }
 
 impl RemovedRows {

@@ -135,15 +135,16 @@ impl Run for Deformation {
 
     fn save(&self) -> Vec<u8> {
         let factors = self.solids.stretch_factors();
-        postcard::to_stdvec(&(factors, self.removed.refits().entries())).unwrap_or_default()
+        let RemovedRows { refits, released, .. } = &self.removed;
+        postcard::to_stdvec(&(factors, refits.entries(), released)).unwrap_or_default()
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        type Saved = (Vec<f64>, Vec<(u32, glam::DMat3)>);
-        let Ok((factors, refits)) = postcard::from_bytes::<Saved>(state) else {
+        type Saved = (Vec<f64>, Vec<(u32, glam::DMat3)>, Vec<u32>);
+        let Ok((factors, refits, released)) = postcard::from_bytes::<Saved>(state) else {
             return false;
         };
-        self.removed.refits = Refits::restored(refits);
+        (self.removed.refits, self.removed.released) = (Refits::restored(refits), released);
         self.is_restored = true;
         self.solids.restore_stretch_factors(&factors)
     }

@@ -43,8 +43,8 @@ impl EnergyGrowth {
             return Ok(());
         }
         let (account, body) = largest(ledger, step.world);
-        let advice =
-            remedies.of_tension(step, Some(&body)).map_or_else(String::new, |text| format!("; {text}"));
+        let advice = remedies.of_debris(step).or_else(|| remedies.of_tension(step, Some(&body)));
+        let advice = advice.map_or_else(String::new, |text| format!("; {text}"));
         Err(StepError::EnergyGrowth {
             stored,
             factor: FACTOR,

@@ -4,6 +4,7 @@ use crate::formulations::fluid::{FlowCloud, Group, Tension};
 use crate::notation::quantity;
 use crate::plugin::SimBuilder;
 use crate::schedule::Step;
+use crate::world::{BodyId, Damage, Removed};
 
 /// Share of the energy that walls have given above which it is that of gaps.
 const GAP_SHARE: f64 = 0.5;
@@ -12,6 +13,7 @@ const GAP_SHARE: f64 = 0.5;
 pub(super) struct Remedies {
     diffused: Vec<bool>,
     controlled: Vec<bool>,
+    cleared: Vec<bool>,
 }
 
 impl Remedies {
@@ -19,7 +21,11 @@ impl Remedies {
     pub fn new(sim: &SimBuilder<'_>) -> Self {
         let scene = sim.scene();
         let having = |plugin| (0..scene.bodies.len()).map(|body| scene.has_plugin(body, plugin)).collect();
-        Self { diffused: having("density_diffusion"), controlled: having("tensile_control") }
+        Self {
+            diffused: having("density_diffusion"),
+            controlled: having("tensile_control"),
+            cleared: having("remove_fragments"),
+        }
     }
 
     /// Advice for walls that have given so much energy, J.
@@ -28,6 +34,9 @@ impl Remedies {
             return "the pressure in gaps that no particle of the fluid fits into has moved a body, and no fluid has followed: start the body two spacings of the fluid from walls and others, hold it \
                     while the fluid strikes it, or take more particles"
                 .to_owned();
+        }
+        if let Some(text) = self.of_debris(step) {
+            return text;
         }
         let lacks_diffusion = step.resources.try_get::<FlowCloud>().is_some_and(|cloud| {
             let mut fluids = cloud.groups.iter().filter(|group| group.fluid().is_some());
@@ -45,6 +54,25 @@ impl Remedies {
             Some(text) => format!("{text}; else {rest}"),
             None => format!("the pressure that walls and bodies take from the flow does not fit it: {rest}"),
         }
+    }
+
+    /// Advice where particles that have failed are left in a flow, which presses on each of them as on a part
+    /// of a solid.
+    pub fn of_debris(&self, step: &Step<'_>) -> Option<String> {
+        FlowCloud::whole(step.resources)?;
+        let has_debris = |id: BodyId| {
+            let (view, mut rows) = step.world.body_view(id);
+            let (Ok(damage), Ok(removed)) = (view.read::<Damage>(), view.read::<Removed>()) else {
+                return false;
+            };
+            rows.any(|row| damage[row].0 >= 1.0 && removed[row] == Removed::NO)
+        };
+        let id = (0..step.world.bodies().len()).map(BodyId).find(|id| has_debris(*id))?;
+        let pieces = if self.cleared[id.0] { "" } else { ", and `remove_fragments()` loose pieces" };
+        Some(format!(
+            "particles of `{}` that have failed are in the flow, which presses on each of them as on a part of a solid: `failure` with `then: Removed` takes them out{pieces}",
+            step.world.body(id).name
+        ))
     }
 
     /// Advice for a fluid under tension, or for the one of that name; none if it has the plugin.

@@ -122,7 +122,8 @@ impl MeasuredPoints<'_> {
         let points = places.iter().map(point).collect();
         let elastic = law.elastic();
         let coupling = elastic.lambda / (elastic.lambda + 2.0 * elastic.shear);
-        Some(SurfacePoints { body: body.id, coupling, flows: law.remembers_path(), maps, points })
+        let flows = law.initial_yield_stress().is_some();
+        Some(SurfacePoints { body: body.id, coupling, flows, maps, points })
     }
 
     /// The parts that each particle carries of the surface of the body, m2 (m); none where loads act on
