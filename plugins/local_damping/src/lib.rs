@@ -12,12 +12,12 @@ mod tests;
 use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder};
 use meshless_engine::rigid::RIGID_BODIES;
 use meshless_engine::schedule::{Mode, Stage, System};
-use meshless_engine::world::{Force, Mass, Mobility, Velocity};
+use meshless_engine::world::{Mass, Mobility, Velocity};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use decay::{Decay, Window};
-use relaxation::RelaxationSystem;
+use relaxation::Relaxing;
 use stiffness::PreviousForce;
 
 /// Registers the plugin.
@@ -81,22 +81,30 @@ impl Plugin for LocalDamping {
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         let window = self.window()?;
         let bodies = sim.scope().clone();
-        let system = match self.mode {
+        match self.mode {
             DampingMode::Constant => {
                 let rate = self.constant_rate()?;
-                System::new(Stage::PostStep, Self::NAME, Decay { bodies: bodies.clone(), window, rate })
+                let decay = Decay { bodies: bodies.clone(), window, rate };
+                let system =
+                    System::new(Stage::PostStep, Self::NAME, decay).reads::<Mass>().reads::<Mobility>();
+                let system = system.writes::<Velocity>().touches_packed(RIGID_BODIES, Mode::Reads);
+                sim.add_system(system.on_bodies(bodies));
             }
             DampingMode::Relaxation { tolerance, after, stop } => {
                 self.check_relaxation(tolerance, after)?;
                 sim.add_column::<PreviousForce>();
-                let relaxation = RelaxationSystem::new(bodies.clone(), window, tolerance, after, stop);
-                System::new(Stage::PostStep, Self::NAME, relaxation)
-                    .reads::<Force>()
-                    .writes::<PreviousForce>()
+                for system in relaxation::systems(&bodies, window, stop, sim.scene().time.end) {
+                    sim.add_system(system);
+                }
+                sim.add_setup(move |setup| {
+                    if setup.resources.try_get::<Relaxing>().is_none() {
+                        setup.resources.insert(Relaxing::default());
+                    }
+                    setup.resources.get_mut::<Relaxing>().join(&bodies, tolerance, after);
+                    Ok(())
+                });
             }
-        };
-        let system = system.touches_packed(RIGID_BODIES, Mode::Reads);
-        sim.add_system(system.reads::<Mass>().reads::<Mobility>().writes::<Velocity>().on_bodies(bodies));
+        }
         Ok(())
     }
 }

@@ -192,3 +192,50 @@ fn rigid_bodies_that_go_on_moving_are_named() {
     };
     assert!(named("weight") && !named("floor"), "{:?}", sim.warnings());
 }
+
+/// Two cantilevers that touch, the upper one loaded at its end, and a block that nothing loads.
+fn beams_and_block(own: &str, common: &str, end: f64) -> String {
+    let beam = |name: &str, from: f64, formulation: &str| {
+        format!(
+            "Body(name: \"{name}\", material: \"rubber\", shape: Box(min: (0.0, {from:?}), max: ({LENGTH:?}, {:?})),
+                spacing: 0.03125, formulation: {formulation}, plugins: [hourglass_control(), {own}])",
+            from + HEIGHT
+        )
+    };
+    format!(
+        "Scene(dimension: Two,
+        materials: {{\"rubber\": StVenantKirchhoff(density: {DENSITY:?}, young: {YOUNG:?}, poisson: 0.3)}},
+        bodies: [{}, {}, {}], contacts: [Contact(between: (\"upper\", \"lower\"))],
+        conditions: [Fix(on: Select(face: MinX)), Force(on: Select(body: \"upper\", face: MaxX), value: (0.0, -10.0))],
+        plugins: [{common}], time: (end: {end:?}))",
+        beam("upper", 0.0, "TotalLagrangian"),
+        beam("lower", -HEIGHT, "UpdatedLagrangian()"),
+        beam("block", 1.0, "TotalLagrangian"),
+    )
+}
+
+#[test]
+fn bodies_that_relax_share_their_rate_and_their_end_wherever_the_plugin_is_stated() {
+    let relaxation = "local_damping(mode: Relaxation(tolerance: 1e-3))";
+    let mut own = simulation(&beams_and_block(relaxation, "", 20.0));
+    let mut common = simulation(&beams_and_block("", relaxation, 20.0));
+    for sim in [&mut own, &mut common] {
+        sim.run(|_| true).expect("a run");
+        assert!(sim.stop_reason().is_some_and(|reason| reason.contains("in static equilibrium")));
+        assert!(sim.warnings().iter().all(|text| !text.contains("to rest")), "{:?}", sim.warnings());
+    }
+    // The sums over bodies are taken in another order.
+    assert!((tip(&own) / tip(&common) - 1.0).abs() < 1e-6, "{} {}", tip(&own), tip(&common));
+    assert!((own.clock().time / common.clock().time - 1.0).abs() < 1e-6);
+}
+
+#[test]
+fn a_relaxation_that_has_not_come_to_rest_at_the_end_says_so() {
+    let warned = |damping: &str| {
+        let mut sim = simulation(&cantilever("-10.0", damping, 0.2));
+        sim.run(|_| true).expect("a run");
+        sim.warnings().iter().any(|text| text.contains("has not brought the bodies to rest"))
+    };
+    assert!(warned("local_damping(mode: Relaxation())"));
+    assert!(!warned("local_damping(mode: Relaxation(stop: false))") && !warned("local_damping(rate: 1.0)"));
+}
