@@ -6,8 +6,8 @@
 //! Compared with stopping the motion at each peak of kinetic energy, it needs no detection of peaks, which
 //! fast oscillations trigger too early.
 //!
-//! The quotient is that of all bodies that relax, wherever the plugin is stated. For one of two bodies that touch,
-//! dx.df contains the force by which the other one moves it, and is no stiffness.
+//! The quotient is that of all bodies that relax, wherever the plugin is stated. For one of two bodies that
+//! touch, dx.df contains the force by which the other one moves it, and is no stiffness.
 
 use meshless_engine::notation::quantity;
 use meshless_engine::parallel::BlockSum;
