@@ -12,6 +12,7 @@ use super::correction_impulse::{ParticleRows, Particles, give_to_rigid_body};
 use super::drag;
 use super::drag::DragColumns;
 use super::exchange::{CouplingForce, CouplingFriction, CouplingPressure, Exchange};
+use super::light_body::WetSurface;
 use super::sub_cycled::share_of_long_step;
 use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud, FluidState, Group, PARTS, PLACES_BEFORE, Role};
 use crate::formulations::fluid::lanes::FlowParticle;
@@ -21,7 +22,7 @@ use crate::formulations::fluid::passes::{friction_on, reads_flow};
 use crate::parallel::{Lanes4, for_each_block};
 use crate::plugin::SimBuilder;
 use crate::removal::REMOVED_ENERGY;
-use crate::rigid::{RIGID_BODIES, RigidBodies};
+use crate::rigid::{RIGID_BODIES, RigidBodies, RigidBody};
 use crate::schedule::{AccountKind, Adds, Mode, Run, Stage, Step, StepError, System};
 use crate::world::{BodyId, BodySet, Force, Mass, Mobility, PhaseId, Position, Removed, Velocity};
 
@@ -60,19 +61,7 @@ pub fn add_force_on_bodies(
     if follows {
         drag::add(sim, &bodies, phase, label);
     }
-    let step_of = |id| (id, SURFACE * share_of_long_step(id, sim));
-    let coupling = Coupling {
-        phase,
-        follows,
-        steps: bodies.iter().map(step_of).collect(),
-        total: Vec::new(),
-        parts: Vec::new(),
-        other_total: Vec::new(),
-        other_parts: Vec::new(),
-        moments: SurfaceMoments::default(),
-        drag: Vec::new(),
-        sums: Vec::new(),
-    };
+    let coupling = Coupling::new(phase, follows, &bodies, sim);
     let system = reads_flow(System::new(Stage::FinalIntegrate, label, coupling))
         .on_phases([phase])
         .in_long_steps()
@@ -134,6 +123,8 @@ struct Coupling {
     follows: bool,
     /// Stable step of the surface of each body, in units of h / sqrt(K / rho).
     steps: Vec<(BodyId, f64)>,
+    /// Surfaces of the rigid bodies.
+    surfaces: Vec<WetSurface>,
     /// Force on the particles of a body, and its parts, N.
     total: Vec<Force>,
     parts: Vec<DVec3>,
@@ -147,6 +138,23 @@ struct Coupling {
 }
 
 impl Coupling {
+    fn new(phase: PhaseId, follows: bool, bodies: &BodySet, sim: &SimBuilder<'_>) -> Self {
+        let step_of = |id| (id, SURFACE * share_of_long_step(id, sim));
+        Self {
+            phase,
+            follows,
+            steps: bodies.iter().map(step_of).collect(),
+            surfaces: bodies.iter().filter_map(|id| WetSurface::new(id, sim)).collect(),
+            total: Vec::new(),
+            parts: Vec::new(),
+            other_total: Vec::new(),
+            other_parts: Vec::new(),
+            moments: SurfaceMoments::default(),
+            drag: Vec::new(),
+            sums: Vec::new(),
+        }
+    }
+
     /// Sums the forces of the flow on the particles of a body over both of its sides, if it is thin.
     fn sum_forces(&mut self, cloud: &FlowCloud, body: BodyId) {
         for (side, group) in cloud.groups.iter().filter(|group| group.body == body).enumerate() {
@@ -210,6 +218,7 @@ impl Coupling {
             drag: drag.as_mut().map(|drag| drag.rows(rows)),
         };
         let body = rigid.as_mut().and_then(|bodies| bodies.of_mut(group.body));
+        let step_of_pressure = self.step_of_pressure(cloud, group, particles.lightest(), body.as_deref());
         let (exchange, rate) = match body {
             Some(body) => (give_to_rigid_body(body, &particles, columns), particles.rate_of_rigid_body(body)),
             None => (particles.give(columns, &mut self.sums), particles.rate()),
@@ -218,16 +227,36 @@ impl Coupling {
         if rate > 0.0 {
             step.limits.propose(1.0 / rate, format_args!("friction of the fluid on `{name}`"));
         }
-        if cloud.soft_neighborhood(group).is_some()
-            && let Some(density) = particles.lightest()
-        {
-            let fluids = cloud.groups.iter().filter_map(Group::fluid);
-            let stiffest = fluids.map(FluidState::bulk_modulus).fold(0.0, f64::max);
-            let own = self.steps.iter().find(|(id, _)| *id == group.body).map_or(SURFACE, |(_, step)| *step);
-            let limit = own * cloud.kernel.smoothing_length() * (density / stiffest).sqrt();
-            step.limits.propose(limit, format_args!("pressure of the fluid on `{name}`"));
+        if step_of_pressure.is_finite() {
+            step.limits.propose(step_of_pressure, format_args!("pressure of the fluid on `{name}`"));
         }
         Ok(exchange)
+    }
+
+    /// Stable step of the pressure of the fluids on a body, s; infinite on one that they do not move. The
+    /// particle of it with the minimum density that is wet has `lightest`, kg/m3.
+    fn step_of_pressure(
+        &self,
+        cloud: &FlowCloud,
+        group: &Group,
+        lightest: Option<f64>,
+        rigid: Option<&RigidBody>,
+    ) -> f64 {
+        let Some(lightest) = lightest else { return f64::INFINITY };
+        let h = cloud.kernel.smoothing_length();
+        let fluids = cloud.groups.iter().filter_map(Group::fluid);
+        let stiffest = fluids.map(FluidState::bulk_modulus).fold(0.0, f64::max);
+        if let Some(body) = rigid {
+            let surface = self.surfaces.iter().find(|surface| surface.body == group.body);
+            return surface.map_or(f64::INFINITY, |surface| {
+                surface.stable_step(body, group.has_suction(), h, stiffest)
+            });
+        }
+        if cloud.soft_neighborhood(group).is_none() {
+            return f64::INFINITY;
+        }
+        let own = self.steps.iter().find(|(id, _)| *id == group.body).map_or(SURFACE, |(_, step)| *step);
+        own * h * (lightest / stiffest).sqrt()
     }
 }
 

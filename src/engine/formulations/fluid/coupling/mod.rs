@@ -8,6 +8,8 @@ mod correction_impulse;
 
 mod force_on_bodies;
 
+mod light_body;
+
 mod sub_cycled;
 
 pub use force_on_bodies::add_force_on_bodies;

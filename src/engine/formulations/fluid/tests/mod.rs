@@ -14,6 +14,7 @@ mod channel;
 
 mod vessels;
 
+mod light;
 mod loads;
 
 mod rest;

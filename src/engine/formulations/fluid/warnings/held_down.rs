@@ -20,6 +20,10 @@ use crate::world::{BodyId, ReferenceVolume};
 const FRAMES: u32 = 3;
 /// Way from one frame to the next, over the spacing of the fluid, up to which a body stays where it is.
 const STILL: f64 = 0.05;
+/// Force over the weight of the fluid in the place of a body from which on it holds the body down. Sound that
+/// crosses a body of next to no mass exerts less, and the body follows it: 1e-4 on a disc of a thousandth of
+/// the density of the fluid.
+const PRESSED: f64 = 0.01;
 
 /// Observations of a body in the last frames.
 #[derive(Clone, Serialize, Deserialize)]
@@ -71,7 +75,8 @@ impl HeldDown {
             let Some(down) = is_light.then(|| force_on(cloud, body.id).dot(gravity.normalize())) else {
                 continue;
             };
-            let held = is_still && down > 0.0 && is_wet_below(cloud, body.id, gravity.normalize(), spacing);
+            let is_pressed = down > PRESSED * lightest * volume * gravity.length();
+            let held = is_still && is_pressed && is_wet_below(cloud, body.id, gravity.normalize(), spacing);
             let frames = if held { before.map_or(0, |seen| seen.frames) + 1 } else { 0 };
             self.seen.retain(|seen| seen.body != number);
             self.seen.push(SeenFrames { body: number, place, frames });
