@@ -64,7 +64,7 @@ pub(crate) use cloud::FLOW_LOADS;
 pub use cloud::FLOW_RECORDS;
 pub use cloud::{ArrangementPass, NearPairs, RowPass, RowSums, smallest_eigenvalue};
 pub use cloud::{BoundarySurface, FlowCloud, FluidState, Group, Near, Role};
-pub use coupling::damp_sub_cycled_bodies;
+pub use coupling::{CouplingForce, damp_sub_cycled_bodies};
 pub use density::{DensityShift, DisplacementAccount, SHIFTING_ENERGY};
 pub(crate) use fields::fields;
 pub use formulation::Fluid;

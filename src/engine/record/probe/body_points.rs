@@ -75,7 +75,7 @@ impl Measure for BodyPoints {
         };
         let mut all: Vec<Vec<f64>> = shares.iter().map(at).collect();
         for (k, values) in all.iter_mut().enumerate() {
-            self.at_surface(k, world, &there, values)?;
+            self.at_surface(k, (world, resources), &there, values)?;
         }
         match &self.made {
             PointReduction::Value | PointReduction::Line(_) => Ok(all.concat()),
@@ -103,13 +103,13 @@ impl BodyPoints {
     fn at_surface(
         &self,
         k: usize,
-        world: &World,
+        (world, resources): (&World, &Resources),
         there: &dyn Fn(u32) -> bool,
         values: &mut [f64],
     ) -> Result<(), MissingColumn> {
         let Some(surface) = &self.surface else { return Ok(()) };
         let (Some(of_stress), Some(at_surface)) =
-            (self.field.of_stress(self.body), surface.stress(k, world, there)?)
+            (self.field.of_stress(self.body), surface.stress(k, world, resources, there)?)
         else {
             return Ok(());
         };

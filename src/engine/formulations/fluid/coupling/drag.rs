@@ -49,7 +49,7 @@ pub fn add(sim: &mut SimBuilder<'_>, bodies: &BodySet, phase: PhaseId, label: &s
     sim.add_column_to::<CouplingImpulse>(bodies);
     sim.add_column_to::<CouplingWork>(bodies);
     sim.add_system(writes_drag(
-        System::new(Stage::Rates, format!("{label}_drag"), Drag { bodies: bodies.clone() })
+        System::new(Stage::External, format!("{label}_drag"), Drag { bodies: bodies.clone() })
             .on_phases([phase])
             .reads::<Velocity>()
             .adds::<Force>(),

@@ -51,7 +51,7 @@ pub fn add_force_on_bodies(
     );
     sim.add_system(
         System::each::<(Adds<Force>, &CouplingForce)>(
-            Stage::Rates,
+            Stage::External,
             format!("{label}_frozen"),
             bodies.clone(),
             |_, (force, coupling)| force.0 += coupling.0,

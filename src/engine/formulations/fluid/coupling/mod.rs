@@ -12,5 +12,6 @@ mod light_body;
 
 mod sub_cycled;
 
+pub use exchange::CouplingForce;
 pub use force_on_bodies::add_force_on_bodies;
 pub use sub_cycled::damp_sub_cycled_bodies;

@@ -116,14 +116,16 @@ impl MeasuredPoints<'_> {
                 fade: (1.0 - place.depth / (SECOND * body.spacing)).max(0.0),
                 stencil: stencil?.moved(shift, &maps),
                 surfaces: foot.images().map(carried).collect(),
+                place: foot.clone(),
                 foot: foot.moved(shift, &maps),
             })
         };
         let points = places.iter().map(point).collect();
         let elastic = law.elastic();
         let coupling = elastic.lambda / (elastic.lambda + 2.0 * elastic.shear);
-        let flows = law.initial_yield_stress().is_some();
-        Some(SurfacePoints { body: body.id, coupling, flows, maps, points })
+let flows = law.initial_yield_stress().is_some();
+        let gravity = sim.gravity();
+        Some(SurfacePoints { body: body.id, coupling, flows, gravity, maps, points })
     }
 
     /// The parts that each particle carries of the surface of the body, m2 (m); none where loads act on

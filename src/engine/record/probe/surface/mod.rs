@@ -14,7 +14,8 @@
 //! sigma n, is replaced by the traction on the surface at a constant strain along it: stresses along the
 //! surface change by lambda / (lambda + 2 mu) of what changes along the normal.
 //!
-//! The traction is that of the forces from outside on the particles that carry the surface. That holds where
+//! The traction is that of the forces from outside on the particles that carry the surface, and the pressure
+//! of fluids there. That holds where
 //! such forces are those of a traction, nothing holds the surface, and the material there is elastic.
 
 mod internal_force;

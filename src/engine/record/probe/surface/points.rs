@@ -5,12 +5,15 @@ use glam::{DMat3, DVec3};
 use super::internal_force::ForceOfBody;
 use super::traction::{LoadedParticle, SurfaceTraction};
 use crate::fields::cauchy;
+use crate::formulations::fluid::{CouplingForce, FlowCloud};
 use crate::linalg::Sym3;
+use crate::record::probe::flow::pressure_on_face;
 use crate::record::probe::stencil::Stencil;
+use crate::schedule::Resources;
 use crate::symmetry::Map;
 use crate::world::{
     BodyId, Column, Damage, DeformationGradient, Force, MissingColumn, Mobility, PiolaStress, PlasticStrain,
-    ReferenceVolume, World,
+    Position, ReferenceVolume, World,
 };
 
 /// Force from outside on the particles near a point that no traction explains, over their stress times their
@@ -27,6 +30,8 @@ pub(super) struct PointBelow {
     pub stencil: Stencil,
     /// The same of the point of the surface above it.
     pub foot: Stencil,
+    /// The point of the surface, by the places of the particles.
+    pub place: Stencil,
     /// What each of these carries of this side of the body in the reference configuration, outwards, m2 (m),
     /// by its number and that of its map.
     pub surfaces: Vec<(u32, u32, DVec3)>,
@@ -39,6 +44,8 @@ pub(in crate::record::probe) struct SurfacePoints {
     pub(super) coupling: f64,
     /// Whether the material may flow.
     pub(super) flows: bool,
+    /// Acceleration of gravity, m/s2.
+    pub(super) gravity: DVec3,
     /// By which the body goes on beyond symmetry planes and periods.
     pub(super) maps: Vec<Map>,
     pub(super) points: Vec<Option<PointBelow>>,
@@ -63,6 +70,7 @@ impl SurfacePoints {
         &self,
         k: usize,
         world: &World,
+        resources: &Resources,
         there: &dyn Fn(u32) -> bool,
     ) -> Result<Option<SurfaceStress>, MissingColumn> {
         let Some(point) = &self.points[k] else { return Ok(None) };
@@ -75,13 +83,42 @@ impl SurfacePoints {
             return Ok(None);
         }
         let normal = (foot.deformation().inverse().transpose() * point.normal).normalize_or_zero();
-        let excess = foot.stress() * normal - traction.on(normal);
+        let mut excess = foot.stress() * normal - traction.on(normal);
+        if let Some(pressure) = self.pressure_of_fluids(point, normal, (world, resources), there)? {
+            // Their friction is not known at the surface: along it the stress is extrapolated.
+            excess = (excess.dot(normal) + pressure) * normal;
+        }
         let of_traction = self.of_traction(excess, normal) * point.fade;
         let near = StressesNearby::read(self, world, point.stencil.shares_of_images(axes, there))?;
         Ok(Some(SurfaceStress { stress: Sym3::symmetric_part(near.stress() - of_traction), share }))
     }
 
-    /// The particles that carry these parts of the surface, with the forces from outside on them.
+    /// Pressure of the fluids on the surface at a point, Pa, as a sensor shows it there; none where there is
+    /// none. Their forces act on rows of particles as deep as their kernel is wide: those on the outermost
+    /// row alone are no traction.
+    fn pressure_of_fluids(
+        &self,
+        point: &PointBelow,
+        normal: DVec3,
+        (world, resources): (&World, &Resources),
+        there: &dyn Fn(u32) -> bool,
+    ) -> Result<Option<f64>, MissingColumn> {
+        let (view, rows) = world.body_view(self.body);
+        let Some(cloud) = FlowCloud::whole(resources).filter(|_| view.has::<CouplingForce>()) else {
+            return Ok(None);
+        };
+        let position = view.read::<Position>()?;
+        let shares = point.place.shares_of_images(world.dimension().count(), there);
+        let place = |&(particle, map, share): &(u32, u32, f64)| {
+            share * self.maps[map as usize].place(position[rows.start + particle as usize].0)
+        };
+        let at = shares.iter().map(place).sum();
+        let pressure = pressure_on_face(&cloud, at, normal, self.gravity);
+        Ok((pressure != 0.0).then_some(pressure))
+    }
+
+    /// The particles that carry these parts of the surface, with the forces from outside on them, without
+    /// those of fluids.
     fn loaded(
         &self,
         surfaces: &[(u32, u32, DVec3)],
@@ -91,11 +128,13 @@ impl SurfacePoints {
         let (view, rows) = world.body_view(self.body);
         let (force, internal) = (view.read::<Force>()?, view.read::<ForceOfBody>()?);
         let deformation = view.read::<DeformationGradient>()?;
+        let of_fluids = if view.has::<CouplingForce>() { Some(view.read::<CouplingForce>()?) } else { None };
         let of = |&(particle, map, surface): &(u32, u32, DVec3)| {
             let (row, map) = (rows.start + particle as usize, &self.maps[map as usize]);
             let gradient = map.tensor(deformation[row].0);
             let surface = gradient.determinant() * (gradient.inverse().transpose() * surface);
-            LoadedParticle { surface, force: map.vector(force[row].0 - internal[row].0) }
+            let of_fluids = of_fluids.as_ref().map_or(DVec3::ZERO, |of_fluids| of_fluids[row].0);
+            LoadedParticle { surface, force: map.vector(force[row].0 - internal[row].0 - of_fluids) }
         };
         Ok(surfaces.iter().filter(|carried| there(carried.0)).map(of).collect())
     }

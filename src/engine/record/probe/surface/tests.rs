@@ -149,6 +149,38 @@ fn a_loaded_side_is_not_free() {
     assert!((on_side(held, -0.15) - 1.0).abs() < 0.1, "{}", on_side(held, -0.15));
 }
 
+/// A block under the pressure p of a liquid is compressed in one direction, `sigma_yy = -p` up to its
+/// surface, with particles as wide as those of the liquid and half as wide. It showed the stress of a free
+/// surface.
+#[test]
+fn a_wet_side_is_not_free() {
+    let (load, poisson): (f64, f64) = (1000.0, 0.3);
+    let strain = load * (1.0 + poisson) * (1.0 - 2.0 * poisson) / (1e6 * (1.0 - poisson));
+    let across = -load * poisson / (1.0 - poisson);
+    for formulation in ["TotalLagrangian", "UpdatedLagrangian", "Eulerian"] {
+        for spacing in [0.025, 0.0125] {
+            let found = |component: &str| {
+                first_of(format!(
+                    r#"(dimension: Two, domain: (min: (0, -1), max: (0.2, 1), periodic: [X]),
+                    materials: {{"m": StVenantKirchhoff(density: 1000, young: 1e6, poisson: {poisson}), "w": Fluid(density: 1000, sound_speed: 20)}},
+                    bodies: [
+                        (name: "w", material: "w", shape: Box(min: (0, 0), max: (0.2, 0.1)), spacing: 0.025, formulation: Fluid(pressure: "{load}")),
+                        (name: "b", material: "m", shape: Box(min: (0, -0.1), max: (0.2, 0)), spacing: {spacing}, formulation: {formulation}),
+                        (name: "lid", material: "wall", shape: Box(min: (0, 0.1), max: (0.2, 0.2)), spacing: 0.025, formulation: Wall(suction: true)),
+                    ],
+                    conditions: [InitialDisplacement(on: Select(body: "b"), value: (None, "-{strain}*y"))],
+                    probes: [Probe(name: "p", quantity: Field("stress.{component}"), at: (0.1, 0), follows: "b")], time: (end: 1e-9, step: Fixed(1e-9)))"#
+                ))[0]
+                    .1
+            };
+            for (component, exact) in [("yy", -load), ("xx", across), ("xy", 0.0)] {
+                let found = found(component);
+                assert!((found - exact).abs() < 0.02 * load, "{formulation} {spacing} {component}: {found}");
+            }
+        }
+    }
+}
+
 /// The slope along the surface that a least-squares fit finds in u = X_n X_t is that at the shifted place.
 #[test]
 fn shifts_are_those_of_a_fit() {
