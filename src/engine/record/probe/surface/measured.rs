@@ -123,7 +123,7 @@ impl MeasuredPoints<'_> {
         let points = places.iter().map(point).collect();
         let elastic = law.elastic();
         let coupling = elastic.lambda / (elastic.lambda + 2.0 * elastic.shear);
-let flows = law.initial_yield_stress().is_some();
+        let flows = law.initial_yield_stress().is_some();
         let gravity = sim.gravity();
         Some(SurfacePoints { body: body.id, coupling, flows, gravity, maps, points })
     }
