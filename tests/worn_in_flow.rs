@@ -129,27 +129,39 @@ fn a_closed_flow_that_cannot_fill_what_is_worn_is_told_the_pressure_it_lacks() {
     assert_eq!(worn(1.9e4), None);
 }
 
+/// A gate of glass that breaks at its foot in front of water, with further plugins, until `end`.
+fn broken_gate(plugins: &str, end: f64) -> Simulation {
+    let text = format!(
+        r#"(dimension: Two, gravity: (0, -9.81),
+            materials: {{"water": Fluid(density: 1000, viscosity: 1e-3), "glass": NeoHookean(density: 1500, young: 1e7, poisson: 0.3)}},
+            bodies: [(name: "water", material: "water", shape: Box(min: (0, 0), max: (0.4, 0.4)), spacing: 0.02, formulation: Fluid,
+                      plugins: [density_diffusion()]),
+                     (name: "gate", material: "glass", shape: Box(min: (0.4, 0), max: (0.44, 0.5)), spacing: 0.01, formulation: TotalLagrangian,
+                      plugins: [hourglass_control(), {plugins} failure(criterion: MaximumPrincipalStrain(limit: 0.004))]),
+                     (name: "tank", material: "wall", spacing: 0.02, formulation: Wall(slip: Free),
+                      shape: Difference(Box(min: (-0.08, -0.08), max: (2.0, 0.6)), Box(min: (0, 0), max: (3.0, 1.0))))],
+            conditions: [Fix(on: Select(body: "gate", face: MinY))], contacts: [Contact(between: ("gate", "tank"))],
+            time: (end: {end:?}))"#
+    );
+    let mut sim = simulation(&Source::new("gate.ron", text));
+    sim.run(|_| true).unwrap_or_else(|error| panic!("{error}"));
+    assert!(sim.ledger().relative_error().abs() < 0.01, "{}", sim.ledger().relative_error());
+    sim
+}
+
 #[test]
 fn removed_debris_of_a_gate_gives_the_flow_no_energy() {
-    // The gate breaks at its foot. Fits of F in the crack rest on few neighbours.
-    let text = r#"(dimension: Two, gravity: (0, -9.81),
-        materials: {"water": Fluid(density: 1000, viscosity: 1e-3), "glass": NeoHookean(density: 1500, young: 1e7, poisson: 0.3)},
-        bodies: [(name: "water", material: "water", shape: Box(min: (0, 0), max: (0.4, 0.4)), spacing: 0.02, formulation: Fluid,
-                  plugins: [density_diffusion()]),
-                 (name: "gate", material: "glass", shape: Box(min: (0.4, 0), max: (0.44, 0.5)), spacing: 0.01, formulation: TotalLagrangian,
-                  plugins: [hourglass_control(), remove_fragments(), failure(criterion: MaximumPrincipalStrain(limit: 0.004))]),
-                 (name: "tank", material: "wall", spacing: 0.02, formulation: Wall(slip: Free),
-                  shape: Difference(Box(min: (-0.08, -0.08), max: (2.0, 0.6)), Box(min: (0, 0), max: (3.0, 1.0))))],
-        conditions: [Fix(on: Select(body: "gate", face: MinY))], contacts: [Contact(between: ("gate", "tank"))],
-        time: (end: 0.14))"#;
-    let mut sim = simulation(&Source::new("gate.ron", text.to_owned()));
-    sim.run(|_| true).unwrap_or_else(|error| panic!("{error}"));
-    let ledger = sim.ledger();
-    let removed = sim.summary().removed_of["gate"];
-    assert!(
-        removed > 0 && ledger.total_named("removed") > 0.0,
-        "{removed} have taken {} J",
-        ledger.total_named("removed")
-    );
-    assert!(ledger.relative_error().abs() < 0.01, "{}", ledger.relative_error());
+    // Fits of F in the crack rest on few neighbours.
+    let sim = broken_gate("remove_fragments(),", 0.14);
+    let (number, energy) = (sim.summary().removed_of["gate"], sim.ledger().total_named("removed"));
+    assert!(number > 0 && energy > 0.0, "{number} have taken {energy} J");
+}
+
+#[test]
+fn debris_of_a_gate_repels_water_where_it_is() {
+    // Not where the shape of the gate would be, as the affine map has it that fits what has come apart.
+    let sim = broken_gate("", 0.18);
+    // Walls give a few per cent for a while, which they take back: those of which nothing is warned.
+    let given = -sim.ledger().total_named("wall_pressure");
+    assert!(given < 0.05 * sim.ledger().largest(), "walls and bodies give {given} J");
 }

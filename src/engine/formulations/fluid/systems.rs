@@ -23,8 +23,8 @@ use crate::removal::REMOVAL;
 use crate::rigid::RIGID_BODIES;
 use crate::schedule::{Access, Mode, Stage, System};
 use crate::world::{
-    BodySet, Column, Density, DensityRate, Force, Mass, PhaseId, Pressure, ReferencePosition, Removed,
-    Velocity,
+    BodySet, Column, Damage, Density, DensityRate, Force, Mass, PhaseId, Pressure, ReferencePosition,
+    Removed, Velocity,
 };
 
 /// Label of the system that finds who is near, and how fast fluids are compressed.
@@ -97,16 +97,16 @@ pub fn add(
             .after(NEIGHBORS),
     );
     if !boundaries.is_empty() {
-        sim.add_system(
-            System::new(Stage::Neighbors, "fluid_repulsion", repulsion)
-                .on_phases(phases)
-                .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
-                .reads_own_packed()
-                .touches_packed(REPELLED, Mode::Writes)
-                .reads_near::<ReferencePosition>()
-                .writes::<RangeShortfall>()
-                .after(COMPRESSION),
-        );
+        let system = System::new(Stage::Neighbors, "fluid_repulsion", repulsion)
+            .on_phases(phases)
+            .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
+            .reads_own_packed()
+            .touches_packed(REPELLED, Mode::Writes)
+            .reads_near::<ReferencePosition>()
+            .writes::<RangeShortfall>()
+            .after(COMPRESSION);
+        let can_fail = groups.iter().any(|group| sim.body(group.body).can_fail());
+        sim.add_system(if can_fail { system.reads::<Damage>() } else { system });
     }
     add_boundary_rates(sim, groups, fluid, &boundaries);
     add_state(sim, fluid, account);

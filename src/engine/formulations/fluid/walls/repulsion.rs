@@ -10,7 +10,8 @@
 //!
 //! Particles of a fluid at rest stand half a spacing before a wall. Those that start nearer than the range,
 //! where lattices do not fit shapes, lack s_i of it, which falls as soon as they have been farther away and
-//! never rises, so that it changes no energy.
+//! never rises, so that it changes no energy. So do those beside a body as its particles become spheres,
+//! because some have failed.
 //!
 //! This energy does not change when fluid and body move together, so that the opposite force acts on the body
 //! at the place of the fluid particle. The particles of the body around that carry it by shares whose centre
@@ -48,6 +49,8 @@ pub struct Repulsion {
     close: Vec<u32>,
     /// Whether a particle may lack of its range.
     is_short: bool,
+    /// Boundaries whose particles have become spheres in this step, by their first rows in the cloud.
+    broken: Vec<usize>,
 }
 
 impl Repulsion {
@@ -74,14 +77,18 @@ impl Repulsion {
             widest = f64::max(widest, reach);
             surfaces.push(BoundaryShape::of_any(group, stiffness, reach, sim));
         }
-        (Self { surfaces, range, close: Vec::new(), is_short: true }, widest)
+        (Self { surfaces, range, close: Vec::new(), is_short: true, broken: Vec::new() }, widest)
     }
 
     /// Writes down how near particles are to the nearest boundary, and the direction of the repulsion of
     /// those within its range.
     fn measure(&mut self, cloud: &FlowCloud, out: &mut [Repelled], step: &Step<'_>) -> Result<(), StepError> {
         let (range, close) = (self.range, &self.close[..]);
+        self.broken.clear();
         for surface in &mut self.surfaces {
+            if surface.notice_failure(step)? {
+                self.broken.push(surface.group.cloud.start);
+            }
             surface.look(cloud, step, |seen| {
                 let (surface, rows) = (seen.shape, (&mut out[..], close));
                 for_each_block(rows, &mut Vec::new(), &|_, (out, close): (&mut [Repelled], &[u32])| {
@@ -130,7 +137,8 @@ impl Repulsion {
             for repelled in out.iter_mut().filter(|repelled| group.cloud.contains(&repelled.i)) {
                 let short = &mut shortfall[repelled.i - group.cloud.start].0;
                 let within = (self.range - repelled.distance).max(0.0);
-                *short = if is_start { within } else { short.min(within) };
+                let is_new = is_start || self.broken.contains(&repelled.boundary);
+                *short = if is_new { within } else { short.min(within) };
                 repelled.force *= within - *short;
                 is_short |= *short > 0.0;
             }
@@ -158,6 +166,16 @@ impl Run for Repulsion {
         Repelled::share(&mut repelled);
         cloud.repelled = repelled;
         Ok(())
+    }
+
+    fn save(&self) -> Vec<u8> {
+        self.surfaces.iter().map(|surface| u8::from(surface.is_made_of_spheres)).collect()
+    }
+
+    fn restore(&mut self, state: &[u8]) -> bool {
+        let each = self.surfaces.iter_mut().zip(state);
+        each.for_each(|(surface, state)| surface.is_made_of_spheres = *state == 1);
+        self.surfaces.len() == state.len()
     }
 }
 

@@ -4,9 +4,10 @@
 //! the shape there: by the motion of the whole body, where that is one affine map, else by the affine map
 //! that fits the particles of the body around it.
 //!
-//! A body that has lost particles has another shape, and that of a particle file is not known. Their
-//! particles are spheres, and the distance is that from the nearest. They overlap, so that nothing passes
-//! between two of them in the plane or four in space, and end before a fluid at rest begins.
+//! A body that has lost particles has another shape, one of which particles have failed may have come apart,
+//! and that of a particle file is not known. Their particles are spheres, and the distance is that from the
+//! nearest. They overlap, so that nothing passes between two of them in the plane or four in space, and end
+//! before a fluid at rest begins.
 
 use glam::{DMat3, DVec3};
 
@@ -14,11 +15,11 @@ use super::body_motion::BodyMotion;
 use crate::formulations::fluid::cloud::{FlowCloud, Group, LoadCarrier, Shares, part};
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::linalg::dyad;
-use crate::parallel::sum_over_blocks;
+use crate::parallel::{sum_over_blocks, sum_over_own_blocks};
 use crate::plugin::{BodyKind, SimBuilder};
 use crate::schedule::{Step, StepError};
 use crate::shapes::Region;
-use crate::world::ReferencePosition;
+use crate::world::{Damage, ReferencePosition};
 
 /// Square of the distance of a point from the centre of the particles near it, in standard deviations of
 /// these, up to which a map is fitted to them: before a flat face it is some 2, before the corner of a
@@ -46,8 +47,9 @@ pub struct BoundaryShape {
     pub spacing: f64,
     /// Kind of the body.
     kind: BodyKind,
-    /// Whether its particles are spheres: it has lost some, or is from a particle file.
-    is_made_of_spheres: bool,
+    /// Whether its particles are spheres: it has lost some, some have failed, or it is from a particle file.
+    pub is_made_of_spheres: bool,
+    can_fail: bool,
     /// The last motion, of a body that has one; none where it has not been looked for.
     kept: Option<Option<BodyMotion>>,
     /// Distance of the nearest of its particles beyond which a particle is not beside it, m.
@@ -130,6 +132,7 @@ impl BoundaryShape {
             spacing: body.spacing,
             kind: body.kind,
             is_made_of_spheres: region.is_none(),
+            can_fail: body.can_fail(),
             region,
             kept: None,
             reach,
@@ -163,6 +166,20 @@ impl BoundaryShape {
         let motion = BodyMotion::new(records, reference, self.spacing, cloud.plane);
         self.kept = Some(motion);
         motion
+    }
+
+    /// Makes spheres of the particles of a body of which some have failed; returns whether it did so now.
+    pub fn notice_failure(&mut self, step: &Step<'_>) -> Result<bool, StepError> {
+        if !self.can_fail || self.is_made_of_spheres {
+            return Ok(false);
+        }
+        let view = step.world.phase(self.group.phase);
+        let damage = view.read_own::<Damage>()?;
+        let failed = sum_over_own_blocks(&damage[self.group.rows.clone()], &|_, damage: &[Damage]| {
+            damage.iter().filter(|damage| damage.0 >= 1.0).count() as f64
+        });
+        self.is_made_of_spheres = failed > 0.0;
+        Ok(self.is_made_of_spheres)
     }
 
     /// In a step in which the body is not looked at.
