@@ -47,7 +47,7 @@ pub use mesh_fault::MeshFault;
 pub use moments::Moments;
 pub use morton::{MortonSort, morton_order};
 pub use quadrature::counted_moments;
-pub use region::{Aabb, Region};
+pub use region::{Aabb, Region, normal};
 pub use rings::Rings;
 pub use shape::Shape;
 pub use site::Site;

@@ -6,7 +6,7 @@
 use glam::DVec3;
 
 use super::difference::DifferenceRegion;
-use super::region::Region;
+use super::region::{Region, normal};
 use super::shape::Shape;
 
 /// Maximum distance of coincident faces, over the extent of the hole.
@@ -58,12 +58,6 @@ impl<R: Region + ?Sized> DifferenceRegion<R> {
         let is_edge = cos > SHARP && in_hole > of_whole * cos && of_whole > in_hole * cos && cos < 1.0;
         is_edge.then(|| from_edge(of_whole, in_hole, cos))
     }
-}
-
-/// Direction of the gradient of a distance.
-fn normal(distance: impl Fn(DVec3) -> f64, point: DVec3, step: f64, axes: usize) -> DVec3 {
-    let slope = |axis: DVec3| distance(point + step * axis) - distance(point - step * axis);
-    DVec3::AXES[..axes].iter().map(|&axis| slope(axis) * axis).sum::<DVec3>().normalize_or_zero()
 }
 
 /// Search for the material beside an opening, on one side of it.

@@ -160,3 +160,10 @@ pub trait Region: Send + Sync {
 pub(super) fn capped(side: f64, ends: f64) -> f64 {
     side.max(ends).min(0.0) + side.max(0.0).hypot(ends.max(0.0))
 }
+
+/// Direction of the gradient of a distance \[m\] at a point, by differences over `step` \[m\]: the outward
+/// normal of the nearest surface, where it is that from a [`Region`].
+pub fn normal(distance: impl Fn(DVec3) -> f64, point: DVec3, step: f64, axes: usize) -> DVec3 {
+    let slope = |axis: DVec3| distance(point + step * axis) - distance(point - step * axis);
+    DVec3::AXES[..axes].iter().map(|&axis| slope(axis) * axis).sum::<DVec3>().normalize_or_zero()
+}

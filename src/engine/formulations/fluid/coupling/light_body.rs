@@ -10,7 +10,7 @@ use glam::DVec3;
 
 use crate::plugin::{BodyKind, SimBuilder};
 use crate::rigid::RigidBody;
-use crate::shapes::Region;
+use crate::shapes::normal;
 use crate::world::BodyId;
 
 /// Stiffness of the fluid per area of a body with suction, over K / h; without it half of that, as the rate
@@ -52,7 +52,7 @@ impl WetSurface {
             if !(0.0..spacing).contains(&depth) {
                 continue;
             }
-            let normal = outward(&*region, site.position, 0.1 * spacing, axes);
+            let normal = normal(|x| region.distance(x), site.position, 0.1 * spacing, axes);
             let area = site.volume / spacing;
             pieces.push(Piece { place: site.position + depth * normal, normal, area });
             // A sheet of one row has a second face behind it.
@@ -75,10 +75,4 @@ impl WetSurface {
         let squared = share * STIFFNESS * stiffest / h * self.pieces.iter().map(response).sum::<f64>();
         STABLE / squared.sqrt()
     }
-}
-
-/// Unit normal of the surface nearest to a point, by differences over `step`, m.
-fn outward(region: &dyn Region, point: DVec3, step: f64, axes: usize) -> DVec3 {
-    let slope = |axis: DVec3| region.distance(point + step * axis) - region.distance(point - step * axis);
-    DVec3::AXES[..axes].iter().map(|&axis| slope(axis) * axis).sum::<DVec3>().normalize_or_zero()
 }
