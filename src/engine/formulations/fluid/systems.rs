@@ -105,8 +105,7 @@ pub fn add(
             .reads_near::<ReferencePosition>()
             .writes::<RangeShortfall>()
             .after(COMPRESSION);
-        let can_fail = groups.iter().any(|group| sim.body(group.body).can_fail());
-        sim.add_system(if can_fail { system.reads::<Damage>() } else { system });
+        sim.add_system(noticing_failure(system, groups, sim));
     }
     add_boundary_rates(sim, groups, fluid, &boundaries);
     add_state(sim, fluid, account);
@@ -123,22 +122,28 @@ pub fn add(
     Ok(())
 }
 
+/// The system with access to the damage of bodies that can fail: a body of which particles have failed has
+/// another shape.
+fn noticing_failure(system: System, groups: &[Group], sim: &SimBuilder<'_>) -> System {
+    let can_fail = groups.iter().any(|group| sim.body(group.body).can_fail());
+    if can_fail { system.reads::<Damage>() } else { system }
+}
+
 /// Adds the contributions of the pressure of boundaries with suction and of the stretching of deformable
 /// bodies to the compression of the fluid, where there are any.
 fn add_boundary_rates(sim: &mut SimBuilder<'_>, groups: &[Group], fluid: PhaseId, boundaries: &[PhaseId]) {
     let has_suction = groups.iter().any(Group::has_suction);
     let mut before = COMPRESSION;
     if let Some(edges) = EdgeMotion::new(groups, sim) {
-        sim.add_system(
-            System::new(Stage::Neighbors, EDGE_MOTION, edges)
-                .on_phases(boundaries.iter().copied().chain([fluid]))
-                .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
-                .reads_own_packed()
-                .touches_packed(COMPRESSION_RATES, Mode::Writes)
-                .touches_packed(EDGES, Mode::Writes)
-                .reads_near::<ReferencePosition>()
-                .after(COMPRESSION),
-        );
+        let system = System::new(Stage::Neighbors, EDGE_MOTION, edges)
+            .on_phases(boundaries.iter().copied().chain([fluid]))
+            .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
+            .reads_own_packed()
+            .touches_packed(COMPRESSION_RATES, Mode::Writes)
+            .touches_packed(EDGES, Mode::Writes)
+            .reads_near::<ReferencePosition>()
+            .after(COMPRESSION);
+        sim.add_system(noticing_failure(system, groups, sim));
         before = EDGE_MOTION;
     }
     if let Some(ends) = WallEnds::new(groups, sim) {

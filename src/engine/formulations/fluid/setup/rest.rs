@@ -19,7 +19,7 @@ use crate::formulations::fluid::walls::has_suction;
 use crate::neighbors::Periodic;
 use crate::plugin::{SetupError, SimBuilder};
 use crate::scene::Expression;
-use crate::shapes::Region;
+use crate::shapes::{Region, Site, images_near};
 use crate::world::BodyId;
 
 /// Largest distance of the end of a line from the boundary that ends it, over the spacing.
@@ -124,9 +124,12 @@ impl RestLines {
     fn held(&self, sim: &SimBuilder<'_>) -> Vec<bool> {
         let others = sim.bodies().iter().count() - self.layers.len();
         let are_known = self.covers.len() == others && self.layers.iter().all(|layer| layer.region.is_some());
+        let reach = TOUCH * self.spacing;
         let touches = |k: usize, region: &dyn Region| {
-            let sites = &sim.body(self.layers[k].id).sites;
-            sites.par_iter().any(|site| region.distance(site.position) < TOUCH * self.spacing)
+            let is_near = |site: &Site| {
+                self.images(region, site.position, reach).any(|place| region.distance(place) < reach)
+            };
+            sim.body(self.layers[k].id).sites.par_iter().any(is_near)
         };
         let by_cover = |k: usize| self.covers.iter().any(|(_, cover)| touches(k, cover.as_ref()));
         let mut held: Vec<bool> = (0..self.layers.len()).map(|k| !are_known || by_cover(k)).collect();
@@ -161,24 +164,32 @@ impl RestLines {
             p += layer.density * self.gravity.length() * length;
             let step = BEYOND * self.spacing;
             let end = at + (length + step) * up;
-            let beyond = self.periodic.wrap(end);
-            let holds = |other: usize| {
-                let region = self.layers[other].region.as_ref();
-                (other != k || beyond != end) && region.is_some_and(|region| region.contains(beyond))
+            let in_layer = |other: usize| {
+                let region = self.layers[other].region.as_deref()?;
+                let place = self
+                    .images(region, end, step)
+                    .find(|place| (other != k || *place != end) && region.contains(*place))?;
+                Some((other, place))
             };
-            if let Some(next) = (0..self.layers.len()).find(|&other| holds(other)) {
+            let is_in = |cover: &dyn Region| self.images(cover, end, step).any(|place| cover.contains(place));
+            if let Some((next, beyond)) = (0..self.layers.len()).find_map(in_layer) {
                 if let Some(given) = &self.layers[next].given {
                     return Some(p + given.eval(beyond, 0.0));
                 }
                 p += self.layers[next].density * self.gravity.length() * step;
                 (k, at) = (next, beyond);
-            } else if self.covers.iter().any(|(_, cover)| cover.contains(beyond)) {
+            } else if self.covers.iter().any(|(_, cover)| is_in(cover.as_ref())) {
                 return None;
             } else {
                 return Some(p);
             }
         }
         Some(p)
+    }
+
+    /// The images of a place within `reach`, m, of a region.
+    fn images(&self, region: &dyn Region, place: DVec3, reach: f64) -> impl Iterator<Item = DVec3> {
+        images_near(&region.bounds(), place, self.periodic.lengths(), reach)
     }
 
     /// Length of the line from a point out of a region, m. Where parts of a region meet, it continues.

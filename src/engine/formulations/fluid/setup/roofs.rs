@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use crate::formulations::fluid::walls::Wall;
 use crate::notation::quantity;
 use crate::plugin::{BodyKind, SimBuilder};
-use crate::shapes::Region;
+use crate::shapes::{Region, images_near};
 use crate::world::BodyId;
 
 /// Pressure that a roof adds, over that of a layer of fluid one spacing thick.
@@ -41,7 +41,12 @@ impl Roofed {
         sim: &SimBuilder<'_>,
     ) -> Option<String> {
         let more = LAYERS * self.density * head;
-        let touches = |region: &dyn Region| self.places.par_iter().any(|&at| region.distance(at) < reach);
+        let lengths = sim.periodic().lengths();
+        let touches = |region: &dyn Region| {
+            let bounds = region.bounds();
+            let images = |at: DVec3| images_near(&bounds, at, lengths, reach);
+            self.places.par_iter().any(|&at| images(at).any(|place| region.distance(place) < reach))
+        };
         let are_walls = covers.iter().filter(|(_, region)| touches(region.as_ref())).all(|(id, _)| {
             let wall = sim.scene().bodies[id.0].formulation.parse::<Wall>();
             sim.body(*id).kind == BodyKind::Boundary && wall.is_ok_and(|wall| !wall.suction)

@@ -274,3 +274,32 @@ fn water_leaves_a_tank_through_a_slit() {
     let joined = run(&format!("Difference({outer}, Union([{tank}, {slit}]))"));
     assert!(nested.iter().zip(&joined).all(|(a, b)| a.0 == b.0), "the two walls differ");
 }
+
+/// A wall that starts across a side of a periodic domain repels there as it does in the middle.
+#[test]
+fn a_wall_across_a_side_of_the_domain_repels_what_falls_on_it() {
+    let fallen = |center: f64| {
+        let left = (center - 0.16f64).rem_euclid(1.0);
+        let mut sim = simulation(&format!(
+            r#"(precision: Double, dimension: Two, domain: (min: (0, -1), max: (1, 1), periodic: [X]),
+                materials: {{"water": Fluid(density: {DENSITY}, sound_speed: {SOUND})}},
+                bodies: [
+                    (name: "water", material: "water", spacing: {SPACING}, velocity: (0.0, -0.5), formulation: Fluid(pressure: 0.0),
+                     shape: Box(min: ({left}, 0.02), max: ({}, {}))),
+                    (name: "wall", {WALL}, spacing: {SPACING}, shape: Box(min: ({}, -0.08), max: ({}, 0))),
+                ], time: (end: 0.2))"#,
+            left + 2.0 * SPACING,
+            0.02 + 2.0 * SPACING,
+            center - 0.3,
+            center + 0.3
+        ));
+        sim.run(|_| true).expect("a run");
+        (column::<Position>(&sim, 0)[0].0.y, column::<Velocity>(&sim, 0)[0].0.y)
+    };
+    let (middle, across) = (fallen(0.5), fallen(0.0));
+    assert!(middle.0 > 0.0 && middle.1 > 0.0, "{middle:?}");
+    assert!(
+        (middle.0 - across.0).abs() < 1e-9 && (middle.1 - across.1).abs() < 1e-6,
+        "{middle:?}, {across:?}"
+    );
+}

@@ -179,3 +179,39 @@ fn liquids_that_fill_a_closed_tank_have_one_pressure_at_their_interface() {
     let in_water = error(&both, 0, |_, y| of_oil(0.2) + 9810.0 * (0.2 - y));
     assert!(in_water.max(in_oil) < 1e-3 * 9810.0 * SPACING, "{in_water} {in_oil}");
 }
+
+/// A box that floats and one that stands on the floor, across the side of a periodic channel: the pressure
+/// below and beside them is that of water that covers the floor without them.
+#[test]
+fn bodies_across_a_side_of_the_domain_cover_the_water_below() {
+    for center in [0.0, 0.4, 0.8] {
+        let images = |x: f64, low: f64, high: f64| {
+            let at = |x: f64| format!("Box(min: ({}, {low}), max: ({}, {high}))", x - 0.1, x + 0.1);
+            format!("{}, {}, {}", at(x), at(x - 0.8), at(x + 0.8))
+        };
+        let body = |name: &str, low: f64, high: f64| {
+            format!(
+                r#"(name: "{name}", material: "wood", spacing: {SPACING}, formulation: Rigid(),
+                    shape: Box(min: ({}, {low}), max: ({}, {high})))"#,
+                center - 0.1,
+                center + 0.1
+            )
+        };
+        let sim = simulation(&format!(
+            r#"(dimension: Two, gravity: (0.0, -9.81), domain: (min: (0, -1), max: (0.8, 1), periodic: [X]),
+                materials: {{"water": Fluid(density: 1000.0, sound_speed: 30.0), "wood": NeoHookean(density: 500.0, young: 1.0e7, poisson: 0.3)}},
+                bodies: [
+                    (name: "water", material: "water", spacing: {SPACING}, formulation: Fluid,
+                     shape: Difference(Box(min: (0, 0), max: (0.8, 0.4)), Union([{}, {}]))),
+                    (name: "floor", material: "wall", spacing: {SPACING}, formulation: Wall(), shape: Box(min: (0, -0.06), max: (0.8, 0))),
+                    {}, {}
+                ], time: (end: 1.0))"#,
+            images(center, 0.3, 0.5),
+            images(center, 0.0, 0.1),
+            body("float", 0.3, 0.5),
+            body("block", 0.0, 0.1)
+        ));
+        let error = error(&sim, 0, |_, y| 9810.0 * (0.4 - y));
+        assert!(error < 1e-3 * 9810.0 * SPACING, "{center}: {error}");
+    }
+}

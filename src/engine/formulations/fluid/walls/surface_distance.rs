@@ -18,7 +18,7 @@ use crate::linalg::dyad;
 use crate::parallel::{sum_over_blocks, sum_over_own_blocks};
 use crate::plugin::{BodyKind, SimBuilder};
 use crate::schedule::{Step, StepError};
-use crate::shapes::Region;
+use crate::shapes::{Aabb, Region, images_near};
 use crate::world::{Damage, ReferencePosition};
 
 /// Square of the distance of a point from the centre of the particles near it, in standard deviations of
@@ -41,6 +41,8 @@ pub struct BoundaryShape {
     pub group: Group,
     /// None of a body from a particle file.
     region: Option<Box<dyn Region>>,
+    /// A box around it.
+    bounds: Option<Aabb>,
     /// Stiffness of its repulsion of each fluid, N/m.
     pub stiffness: Vec<f64>,
     /// Spacing of its particles, m.
@@ -132,6 +134,7 @@ impl BoundaryShape {
             spacing: body.spacing,
             kind: body.kind,
             is_made_of_spheres: region.is_none(),
+            bounds: region.as_ref().map(|region| region.bounds()),
             can_fail: body.can_fail(),
             region,
             kept: None,
@@ -293,28 +296,12 @@ impl BoundaryShape {
         self.least_of_images(cloud, at, |x| region.distance(x))
     }
 
-    /// The least distance of a place and of its periodic images that the body may be near.
+    /// The least distance of a place and of its periodic images that the body may be near, whose shape may
+    /// go on beyond the sides of the domain.
     fn least_of_images(&self, cloud: &FlowCloud, at: DVec3, distance_of: impl Fn(DVec3) -> f64) -> f64 {
-        if !cloud.periods.any() {
-            return distance_of(at);
-        }
-        let periodic = cloud.pairs.periodic();
-        let (lengths, inside) = (periodic.lengths(), periodic.wrap(at));
-        let mut distance = distance_of(inside);
-        // Beyond a side of the domain that is near, the body may go on.
-        let from_low = inside - periodic.min();
-        let side = |axis: usize, low: bool| {
-            let gap = if low { from_low[axis] } else { lengths[axis] - from_low[axis] };
-            periodic.axes()[axis] && gap < self.reach
-        };
-        for n in 1..27 {
-            let digits = [n % 3, n / 3 % 3, n / 9];
-            if (0..3).all(|axis| digits[axis] == 0 || side(axis, digits[axis] == 1)) {
-                let turns = DVec3::from_array(digits.map(|digit| [0.0, 1.0, -1.0][digit]));
-                distance = distance.min(distance_of(inside + turns * lengths));
-            }
-        }
-        distance
+        let Some(bounds) = self.bounds.filter(|_| cloud.periods.any()) else { return distance_of(at) };
+        let lengths = cloud.pairs.periodic().lengths();
+        images_near(&bounds, at, lengths, self.reach).map(distance_of).fold(f64::INFINITY, f64::min)
     }
 
     /// Distance of another place from the shape, by the motion at a place, m.

@@ -4,32 +4,17 @@
 use glam::DVec3;
 
 use crate::neighbors::Periodic;
-use crate::shapes::Region;
+use crate::shapes::{Region, images_near};
 
 /// Rise of a plane over a period, over the spacing, below which it is parallel to the axis.
 const PARALLEL: f64 = 0.5;
 /// Sine of the angle between a line and the periodic axes below which it runs along them.
 const ALONG: f64 = 1e-6;
-/// Images of a domain to each side of it in which an unbounded region is looked for.
-const AROUND: f64 = 2.0;
-
 /// Whether a region contains a place or one of its images along the axes whose `lengths`, m, are not zero.
 pub fn contains_image(region: &dyn Region, place: DVec3, lengths: DVec3) -> bool {
-    let bounds = region.bounds();
-    let shifts = |axis: usize| {
-        let length = lengths[axis];
-        let around = |end: f64, otherwise: f64| if end.is_finite() { end / length } else { otherwise };
-        let numbers = if length == 0.0 {
-            0..=0
-        } else {
-            // Half a period more at both ends, as rounding must not matter: the region says what is in it.
-            let low = around(bounds.min[axis] - place[axis], -AROUND) - 0.5;
-            low.floor() as i64..=(around(bounds.max[axis] - place[axis], AROUND) + 0.5).ceil() as i64
-        };
-        numbers.map(move |k| k as f64 * length)
-    };
-    let contains = |x, y, z| region.contains(place + DVec3::new(x, y, z));
-    shifts(0).any(|x| shifts(1).any(|y| shifts(2).any(|z| contains(x, y, z))))
+    // Half a period farther, as rounding must not matter: the region says what is in it.
+    let reach = 0.5 * lengths.max_element();
+    images_near(&region.bounds(), place, lengths, reach).any(|image| region.contains(image))
 }
 
 /// The period, m, over which a plane with that unit normal goes on into the next image: of several axes that

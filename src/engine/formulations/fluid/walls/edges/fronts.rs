@@ -88,6 +88,7 @@ impl WallShapes {
         self.find_beside(cloud);
         let Self { shapes, rows, beside, .. } = self;
         for (shape, beside) in shapes.iter_mut().zip(beside) {
+            shape.notice_failure(step)?;
             if beside.is_empty() {
                 shape.forget_motion();
                 continue;
