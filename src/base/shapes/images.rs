@@ -18,26 +18,23 @@ pub fn images_near(
     lengths: DVec3,
     reach: f64,
 ) -> impl Iterator<Item = DVec3> + use<> {
-    let [x, y, z] = [0, 1, 2].map(|axis| numbers(bounds, place, lengths, reach, axis));
+    let [x, y, z] = [0, 1, 2].map(|axis| periods(bounds, place, lengths, reach, axis));
+    let image = move |x, y, z| place + lengths * DVec3::new(x, y, z);
     x.flat_map(move |x| {
         let z = z.clone();
-        y.clone().flat_map(move |y| z.clone().map(move |z| place + lengths * numbered(x, y, z)))
+        y.clone().flat_map(move |y| z.clone().map(move |z| image(x as f64, y as f64, z as f64)))
     })
 }
 
-fn numbered(x: i64, y: i64, z: i64) -> DVec3 {
-    DVec3::new(x as f64, y as f64, z as f64)
-}
-
 /// The periods by which the images are shifted along an axis.
-fn numbers(bounds: &Aabb, place: DVec3, lengths: DVec3, reach: f64, axis: usize) -> RangeInclusive<i64> {
+fn periods(bounds: &Aabb, place: DVec3, lengths: DVec3, reach: f64, axis: usize) -> RangeInclusive<i64> {
     let length = lengths[axis];
     if length == 0.0 {
         return 0..=0;
     }
-    let periods = |end: f64, otherwise: f64| if end.is_finite() { end / length } else { otherwise };
-    let low = periods(bounds.min[axis] - reach - place[axis], -AROUND);
-    let high = periods(bounds.max[axis] + reach - place[axis], AROUND);
+    let over_length = |end: f64, otherwise: f64| if end.is_finite() { end / length } else { otherwise };
+    let low = over_length(bounds.min[axis] - reach - place[axis], -AROUND);
+    let high = over_length(bounds.max[axis] + reach - place[axis], AROUND);
     let (first, last) = (low.ceil() as i64, high.floor() as i64);
     if first <= last {
         return first..=last;

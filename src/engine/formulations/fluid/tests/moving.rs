@@ -179,3 +179,30 @@ fn a_short_last_step_does_not_change_the_pressure_on_accelerated_boundaries() {
     let change = whole.iter().zip(&more).map(|(a, b)| (a.0 - b.0).abs()).fold(0.0, f64::max);
     assert!(change < 1e-2 * largest, "{change} {largest}");
 }
+
+/// A block that falls through a floor in the middle of a periodic domain, across its side, and beyond it.
+#[test]
+fn a_body_that_passes_through_a_wall_is_named_wherever_it_is_in_a_periodic_domain() {
+    for center in [0.4, 0.8, 1.0, -7.6] {
+        let water = (center + 0.35f64).rem_euclid(0.8).min(0.7);
+        let mut sim = simulation(&format!(
+            r#"(dimension: Two, domain: (min: (0, -1), max: (0.8, 1), periodic: [X]),
+                materials: {{"water": Fluid(density: 1000.0, sound_speed: 30.0), "steel": NeoHookean(density: 7800.0, young: 1.0e7, poisson: 0.3)}},
+                bodies: [
+                    (name: "water", material: "water", spacing: 0.02, formulation: Fluid, shape: Box(min: ({water}, 0), max: ({}, 0.1))),
+                    (name: "floor", material: "wall", spacing: 0.02, formulation: Wall(), shape: Box(min: (0, -0.08), max: (0.8, 0))),
+                    (name: "block", material: "steel", spacing: 0.02, formulation: Rigid(), velocity: (0.0, -4.0),
+                     shape: Box(min: ({}, 0.01), max: ({}, 0.07))),
+                ], time: (end: 0.02))"#,
+            water + 0.1,
+            center - 0.1,
+            center + 0.1
+        ));
+        sim.run(|_| true).expect("a run");
+        let warnings = sim.warnings();
+        assert!(
+            warnings.iter().any(|text| text.contains("of `block` is inside of `floor`")),
+            "{center}: {warnings:?}"
+        );
+    }
+}

@@ -4,11 +4,12 @@ use glam::{DMat3, DVec3};
 
 use crate::formulations::fluid::cloud::smallest_eigenvalue;
 use crate::linalg::{Sym3, dyad};
+use crate::neighbors::Periodic;
 use crate::notation::{place, quantity};
 use crate::plugin::{BodyKind, SimBuilder};
 use crate::scene::Dimension;
 use crate::schedule::{Step, StepError};
-use crate::shapes::Region;
+use crate::shapes::{Region, images_near};
 use crate::world::{BodyId, ParticleId, Position, ReferencePosition, Removed};
 
 /// Depth of the centre of a particle in a wall from which on it is inside, over its spacing.
@@ -23,6 +24,7 @@ const FLAT: f64 = 0.1;
 /// Checks for particles of bodies inside of walls.
 pub struct PassingWalls {
     pairs: Vec<BodyAndWall>,
+    periodic: Periodic,
     /// Pairs that the user has been warned of.
     pub told: Vec<bool>,
 }
@@ -96,7 +98,7 @@ impl PassingWalls {
                 }
             }
         }
-        Self { told: vec![false; pairs.len()], pairs }
+        Self { told: vec![false; pairs.len()], pairs, periodic: sim.periodic() }
     }
 
     /// Checks all pairs. Where parts of a wall move against each other no map fits, so that a particle of the
@@ -120,11 +122,13 @@ impl PassingWalls {
             let (view, rows) = step.world.body_view(pair.body);
             let (position, removed) = (view.read::<Position>()?, view.read::<Removed>()?);
             let [depth, nearest] = [DEPTH * pair.spacings[0], NEAREST * pair.spacings[1]];
+            let (bounds, lengths) = (pair.region.bounds(), self.periodic.lengths());
             let is_inside = |row: &usize| {
                 let at = position[*row].0;
+                let mut images = images_near(&bounds, motion.back(at), lengths, 0.0);
                 removed[*row] == Removed::NO
-                    && pair.region.distance(motion.back(at)) < -depth
-                    && wall.clone().any(|(x, _)| x.distance(at) < nearest)
+                    && images.any(|place| pair.region.distance(place) < -depth)
+                    && wall.clone().any(|(x, _)| self.periodic.minimal_image(x - at).length() < nearest)
             };
             let Some(row) = rows.clone().find(is_inside) else { continue };
             *told = true;

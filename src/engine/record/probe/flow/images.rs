@@ -10,6 +10,7 @@ use crate::shapes::{Region, images_near};
 const PARALLEL: f64 = 0.5;
 /// Sine of the angle between a line and the periodic axes below which it runs along them.
 const ALONG: f64 = 1e-6;
+
 /// Whether a region contains a place or one of its images along the axes whose `lengths`, m, are not zero.
 pub fn contains_image(region: &dyn Region, place: DVec3, lengths: DVec3) -> bool {
     // Half a period farther, as rounding must not matter: the region says what is in it.
