@@ -16,7 +16,7 @@ use meshless_engine::linalg::Sym3;
 use meshless_engine::materials::{ElasticConstants, SolidLaw, StateRows, StressRows, Stretches};
 use meshless_engine::parallel::BLOCK;
 use meshless_engine::world::{
-    Column, ColumnSet, Damage, InternalEnergy, PlasticStrain, PlasticWork, Temperature,
+    Column, ColumnSet, Damage, InternalEnergy, PlasticStrain, PlasticWork, ReachedTemperature, Temperature,
 };
 
 use crate::criterion::{CriterionInput, WatchedCriterion};
@@ -45,7 +45,14 @@ struct LawColumns<'a> {
     /// Where plastic work heats, or the criterion depends on it.
     temperature: Option<&'a mut [Temperature]>,
     /// Where plastic work adds to the pressure.
-    energies: Option<(&'a mut [InternalEnergy], &'a mut [PlasticWork])>,
+    energies: Option<Energies<'a>>,
+}
+
+/// What an equation of state keeps.
+struct Energies<'a> {
+    internal: &'a mut [InternalEnergy],
+    plastic: &'a mut [PlasticWork],
+    temperature: &'a mut [ReachedTemperature],
 }
 
 impl<'a> LawColumns<'a> {
@@ -59,7 +66,11 @@ impl<'a> LawColumns<'a> {
             volume: state.take(),
             mean: state.take(),
             temperature: has_temperature.then(|| state.take()),
-            energies: keeps_energy.then(|| (state.take(), state.take())),
+            energies: keeps_energy.then(|| Energies {
+                internal: state.take(),
+                plastic: state.take(),
+                temperature: state.take(),
+            }),
         }
     }
 }
@@ -119,12 +130,14 @@ impl FailingLaw {
         // The law has heated by the plastic work of a particle without damage.
         let lost = damage * rows.plastic_work[k];
         rows.plastic_work[k] -= lost;
+        let colder = self.inner.plastic_heating() * lost;
         if let Some(temperature) = &mut own.temperature {
-            temperature[k].0 -= self.inner.plastic_heating() * lost;
+            temperature[k].0 -= colder;
         }
-        if let Some((internal, plastic)) = &mut own.energies {
+        if let Some(Energies { internal, plastic, temperature }) = &mut own.energies {
             internal[k].0 -= lost;
             plastic[k].0 -= lost;
+            temperature[k].0 -= colder;
         }
         rows.modulus[k] *= 1.0 - damage;
         if rows.dt > 0.0 {

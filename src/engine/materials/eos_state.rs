@@ -1,9 +1,11 @@
 //! The state of an equation of state with a path-dependent pressure: the internal energy from volume change,
-//! plastic work, and the heat of pair terms.
+//! plastic work, and the heat of pair terms, friction and conduction.
 
 use super::eos::PressureLaw;
 use super::state::StateRows;
-use crate::world::{ColumnSet, InternalEnergy, PlasticWork, ReachedVolumeRatio, ViscousHeat};
+use crate::world::{
+    ColumnSet, InternalEnergy, PlasticWork, ReachedTemperature, ReachedVolumeRatio, ViscousHeat,
+};
 
 /// The pressure of a block, with its state columns if it depends on the path.
 pub(super) struct PressureRows<'a> {
@@ -16,6 +18,7 @@ struct EnergyRows<'a> {
     plastic: &'a mut [PlasticWork],
     viscous: &'a mut [ViscousHeat],
     volume: &'a mut [ReachedVolumeRatio],
+    temperature: &'a mut [ReachedTemperature],
 }
 
 impl<'a> PressureRows<'a> {
@@ -23,7 +26,7 @@ impl<'a> PressureRows<'a> {
     pub fn declare(pressure: &PressureLaw, columns: &mut ColumnSet) {
         if pressure.keeps_energy() {
             columns.add::<InternalEnergy>().add::<PlasticWork>().add::<ViscousHeat>();
-            columns.add::<ReachedVolumeRatio>();
+            columns.add::<ReachedVolumeRatio>().add::<ReachedTemperature>();
         }
     }
 
@@ -31,6 +34,7 @@ impl<'a> PressureRows<'a> {
     pub fn start(pressure: &PressureLaw, state: &mut StateRows<'_>) {
         if pressure.keeps_energy() {
             state.take::<ReachedVolumeRatio>().fill(ReachedVolumeRatio(1.0));
+            state.take::<ReachedTemperature>().fill(ReachedTemperature(f64::NAN));
         }
     }
 
@@ -42,8 +46,29 @@ impl<'a> PressureRows<'a> {
             plastic: state.take(),
             viscous: state.take(),
             volume: state.take(),
+            temperature: state.take(),
         };
         Self { law, energies: law.keeps_energy().then(columns) }
+    }
+
+    /// Heat that row `k` has taken up since its last step beside the law, by friction or conduction, J/m3: it
+    /// is at `temperature`, K, which rises by `rise_by_heat`, K m3/J, zero where heat plays no part.
+    #[inline(always)]
+    pub fn heat_from_outside(&self, k: usize, temperature: f64, rise_by_heat: f64) -> f64 {
+        let Some(energies) = &self.energies else { return 0.0 };
+        let change = temperature - energies.temperature[k].0;
+        if rise_by_heat > 0.0 && !change.is_nan() { change / rise_by_heat } else { 0.0 }
+    }
+
+    /// Leaves row `k` at a temperature, K, after a step of `dt`, s.
+    #[inline(always)]
+    pub fn leave_at(&mut self, k: usize, temperature: f64, dt: f64) {
+        if let Some(energies) = &mut self.energies {
+            let reached = &mut energies.temperature[k].0;
+            if dt > 0.0 || reached.is_nan() {
+                *reached = temperature;
+            }
+        }
     }
 
     /// Pressure of row `k` at the volume ratio J, Pa, and the energy stored by the change of volume, J/m3;
@@ -62,7 +87,7 @@ impl<'a> PressureRows<'a> {
 pub(super) struct StepHeat {
     /// Plastic work.
     pub plastic_work: f64,
-    /// Heat of pair terms.
+    /// Heat of pair terms, friction and conduction.
     pub viscous: f64,
 }
 

@@ -153,6 +153,7 @@ impl HotLoop for HypoelasticLoop<'_, '_> {
             let f = &rows.deformation[k];
             let volume = Volume::of(f);
             let viscous = heats.heat(k, rows.dt);
+            let outside = pressures.heat_from_outside(k, temperature.get(k), law.rise_by_heat);
             let mut now = HypoelasticState {
                 deviator: deviator[k].0,
                 plastic_strain: strain[k].0,
@@ -170,8 +171,9 @@ impl HotLoop for HypoelasticLoop<'_, '_> {
                 now.deviator = law.shape.jump(&now.deviator, &before, f);
             }
             deviator[k].0 = now.deviator;
-            let heat = StepHeat { plastic_work: rows.plastic_work[k], viscous };
+            let heat = StepHeat { plastic_work: rows.plastic_work[k], viscous: viscous + outside };
             let (pressure, stored) = pressures.advance(k, volume.ratio, heat, rows.dt);
+            pressures.leave_at(k, temperature.get(k), rows.dt);
             let tau = (now.deviator.add_diagonal(-pressure)) * volume.ratio;
             rows.stress[k] = first_piola(&tau, &volume.cofactor, volume.ratio);
             let square = now.deviator.double_dot(&now.deviator);

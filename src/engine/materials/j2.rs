@@ -202,6 +202,7 @@ impl HotLoop for PlasticLoop<'_, '_> {
             let mut q = (6.0 * square).sqrt() * shear;
             let mut left = 1.0;
             let viscous = heats.heat(k, rows.dt);
+            let outside = pressures.heat_from_outside(k, temperature.get(k), law.rise_by_heat);
             temperature.set(k, temperature.get(k) + law.rise_by_heat * viscous);
             if law.hardening.needs_temperature() {
                 // Contact, conduction or pair terms may have heated the particle since it last flowed.
@@ -225,8 +226,9 @@ impl HotLoop for PlasticLoop<'_, '_> {
             }
             // Also where bonds are cut: what is beyond yield after that flows back from there.
             equivalent[k].0 = q;
-            let heat = StepHeat { plastic_work: rows.plastic_work[k], viscous };
+            let heat = StepHeat { plastic_work: rows.plastic_work[k], viscous: viscous + outside };
             let (pressure, stored) = pressures.advance(k, volume.ratio, heat, rows.dt);
+            pressures.leave_at(k, temperature.get(k), rows.dt);
             let tau = (e * (2.0 * shear)).add_diagonal(-volume.ratio * pressure);
             rows.stress[k] = first_piola(&tau, &volume.cofactor, volume.ratio);
             rows.energy[k] = shear * square * left * left + stored;

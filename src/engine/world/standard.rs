@@ -58,10 +58,13 @@ column! {
     pub struct PlasticWork(f64) = "plastic_work", "w_p", "J/m^3";
     /// Power per reference volume that pair terms turn into heat, such as that of an artificial viscosity.
     pub struct ViscousPower(f64) = "viscous_power", "q", "W/m^3";
-    /// Heat of pair terms since the start per reference volume.
+    /// Heat of pair terms, and of friction and conduction, since the start per reference volume.
     pub struct ViscousHeat(f64) = "viscous_heat", "w_q", "J/m^3";
     /// Volume ratio to which an equation of state has integrated its energy.
     pub struct ReachedVolumeRatio(f64) = "reached_volume_ratio", "J", "1";
+    /// Temperature at which a law with an equation of state has left a particle; not a number before it has
+    /// seen it. What it finds beyond is heat of friction and conduction.
+    pub struct ReachedTemperature(f64) = "reached_temperature", "T", "K";
     /// Damage: the share of the strength that is lost; 1 for a particle that has failed.
     pub struct Damage(f64) = "damage", "D", "1";
     /// Temperature.
