@@ -1,6 +1,6 @@
 //! Loads on rigid bodies act on the surface; the particles lie half a spacing inside.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use super::part::Part;
 use crate::parallel::{BlockSum, sum_over_blocks};
@@ -118,12 +118,15 @@ pub(super) fn push_beside(part: &Part, arms: &[DVec3], [last, next]: [&[DVec3]; 
             let beside = arms.get(first + k).copied().unwrap_or_default();
             let arm = *point - center + beside;
             sums.last.push(left.rotation * arm, *last);
-            sums.next.push(turn * arm, *next);
+            let turned = turn * arm;
+            sums.next.push(turned, *next);
+            sums.moments += DMat3::from_cols(turned * next.x, turned * next.y, turned * next.z);
             sums.beside += (turn * beside).cross(*next);
         }
         sums
     });
     body.push(&Wrench { force: DVec3::ZERO, torque: sums.beside });
+    body.load_moments += sums.moments;
     let RigidState { velocity, angular_velocity, .. } = body.state;
     let spent = |sum: Wrench, spin: DVec3| 0.5 * (sum.force.dot(velocity) + sum.torque.dot(spin));
     spent(sums.last, left.angular_velocity) + spent(sums.next, angular_velocity)
@@ -136,6 +139,8 @@ struct OnRigid {
     next: Wrench,
     /// Torque at the end of the step that the forces have about their particles, N m.
     beside: DVec3,
+    /// Sum of arm (x) force at the end of the step, N m.
+    moments: DMat3,
 }
 
 impl BlockSum for OnRigid {
@@ -143,5 +148,6 @@ impl BlockSum for OnRigid {
         self.last.add(&next.last);
         self.next.add(&next.next);
         self.beside += next.beside;
+        self.moments += next.moments;
     }
 }

@@ -219,6 +219,9 @@ const MOTION_FACTOR: f64 = 0.1;
 /// Share of a radian by which a body may turn in a step: the rate of its precession is off by a seventh of
 /// the square of that.
 const TURN_FACTOR: f64 = 0.02;
+/// Step of a body that swings in loads that keep their direction, over one over its frequency: the period is
+/// off by a twenty-fourth of the square of that, and above two the swing would grow without bound.
+const SWING_FACTOR: f64 = 0.1;
 /// Steps of a body that nothing moves, in the whole run.
 const MIN_STEPS: f64 = 100.0;
 
@@ -324,14 +327,17 @@ fn share_out(body: &RigidBody, contact: Wrench, step: &Step<'_>) -> Result<(), S
 
 /// Proposes the limit of the motion of a body itself, whose velocity changes by `driven`, m/s2, where it is
 /// prescribed. Its velocity is no limit: only contacts depend on it, and they have limits of their own.
-fn propose(body: &RigidBody, driven: DVec3, end: f64, step: &mut Step<'_>) {
+fn propose(body: &mut RigidBody, driven: DVec3, end: f64, step: &mut Step<'_>) {
+    let moments = std::mem::take(&mut body.load_moments);
+    let swing = body.swing(moments).sqrt() / SWING_FACTOR;
     let spacing = step.world.body(body.id).spacing;
     let turning = body.state.angular_velocity.length();
     let free = body.constraint.free_axes();
     // Forces do not accelerate a body along axes on which its motion is prescribed.
     let pulled = if free == DVec3::ZERO { DVec3::ZERO } else { free * body.state.force / body.mass };
     let acceleration = (pulled + (DVec3::ONE - free) * driven).length() / spacing;
-    let rate = (turning / TURN_FACTOR).max((acceleration / MOTION_FACTOR).sqrt()).max(MIN_STEPS / end);
+    let moving = (turning / TURN_FACTOR).max((acceleration / MOTION_FACTOR).sqrt());
+    let rate = moving.max(swing).max(MIN_STEPS / end);
     let name = &step.world.body(body.id).name;
     step.limits.propose(1.0 / rate, format_args!("motion of `{name}`"));
 }
