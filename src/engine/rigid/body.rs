@@ -142,6 +142,14 @@ impl RigidBody {
         self.state.velocity + self.state.angular_velocity.cross(place - self.state.center)
     }
 
+    /// Mean velocity in a step of `dt`, s, of the point that is at `place` after it, m/s, less `velocity_at`,
+    /// which has the velocities of the mid-step and the arm of the end.
+    #[inline]
+    pub fn lag_at(&self, place: DVec3, dt: f64) -> DVec3 {
+        let spin = self.state.angular_velocity;
+        -0.5 * dt * spin.cross(spin.cross(place - self.state.center))
+    }
+
     /// Inverse mass at `place` along `direction`, 1/kg.
     #[inline]
     pub fn inverse_mass_at(&self, place: DVec3, direction: DVec3) -> f64 {

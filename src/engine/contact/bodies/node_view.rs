@@ -232,6 +232,24 @@ impl NodeMotion<'_> {
         }
     }
 
+    /// Mean velocity of the material there in a step of `dt`, s, less `velocity`, m/s.
+    pub fn lag(&self, place: DVec3, dt: f64) -> DVec3 {
+        match self {
+            Self::Particle(_) => DVec3::ZERO,
+            Self::Rigid(body) => body.lag_at(place, dt),
+        }
+    }
+
+    /// Angular velocity of what touches a tool, 1/s: the mean of two rigid bodies, and that of the tool beside
+    /// a particle.
+    pub fn spin_with(&self, tool: &RigidBody) -> DVec3 {
+        let of_tool = tool.state.angular_velocity;
+        match self {
+            Self::Particle(_) => of_tool,
+            Self::Rigid(body) => 0.5 * (body.state.angular_velocity + of_tool),
+        }
+    }
+
     /// The inverse mass there along a direction, 1/kg.
     pub fn inverse_mass(&self, arm: DVec3, place: DVec3) -> impl Fn(DVec3) -> f64 {
         let mobility = match self {

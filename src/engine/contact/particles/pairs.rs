@@ -1,11 +1,11 @@
 //! Pairs of particles in a step: which of them touch, and their forces.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use crate::contact::active::{ContactEnd, ContactNodes, MinimumLength, NodeLoad};
 use crate::contact::bodies::{Members, ParticleShape, Proximity, of_pair};
 use crate::contact::laws::Touch;
-use crate::contact::response::{ContactEnergy, ContactState, History, Interaction, Losses, PairKey};
+use crate::contact::response::{ContactEnergy, ContactState, History, Interaction, Losses, PairKey, spin_of};
 use crate::neighbors::Periodic;
 use crate::solids::LocalMotion;
 use crate::symmetry::Map;
@@ -91,6 +91,8 @@ impl ContactPairs<'_> {
             area: 1.0,
             arms: near.arms,
             velocity: self.velocity(of, near.arms),
+            lag: DVec3::ZERO,
+            spin: self.spin(of, key).dot(near.normal),
             acceleration: DVec3::ZERO,
         };
         let inverse_mass = |n: DVec3| (mobility[0] + mobility[1]).dot(n * n);
@@ -126,6 +128,8 @@ impl ContactPairs<'_> {
                 area: 1.0,
                 arms: history.arms,
                 velocity: velocity(),
+                lag: DVec3::ZERO,
+                spin: 0.0,
                 acceleration: DVec3::ZERO,
             };
             energies.removed += share * self.interaction.held(&state, self.dt, history);
@@ -162,6 +166,21 @@ impl ContactPairs<'_> {
     #[inline(always)]
     fn velocity(&self, of: [&LocalMotion; 2], arms: [DVec3; 2]) -> DVec3 {
         of[0].velocity(arms[0]) - self.mirror.vector(of[1].velocity(self.mirror.vector(arms[1])))
+    }
+
+    /// Angular velocity of the material around both particles, 1/s: the mean of both. Spheres have none, and
+    /// without friction it does not count.
+    #[inline(always)]
+    fn spin(&self, of: [&LocalMotion; 2], key: PairKey) -> DVec3 {
+        if self.interaction.friction == 0.0 {
+            return DVec3::ZERO;
+        }
+        let around = |motion: &LocalMotion, shape: ParticleShape| {
+            shape.gradient.map_or(DMat3::ZERO, |gradient| motion.rate * gradient.inverse())
+        };
+        let first = around(of[0], self.first.shape(key.0 as usize));
+        let second = around(of[1], self.second.shape(key.1 as usize));
+        0.5 * spin_of(first + self.mirror.tensor(second))
     }
 
     /// Of a particle and its own image one half is in the half that is solved.

@@ -14,6 +14,7 @@ use glam::DVec3;
 
 use super::history::History;
 use super::sliding::Sliding;
+use super::spin::turned_about;
 use crate::contact::laws::{NormalForce, Spring, Touch};
 
 /// Interaction of two bodies in contact.
@@ -43,6 +44,12 @@ pub(in crate::contact) struct ContactState {
     pub arms: [DVec3; 2],
     /// Velocity of the first side relative to the second at that point at mid-step, m/s.
     pub velocity: DVec3,
+    /// Mean of this velocity in the step less `velocity`, m/s, where rigid bodies turn: a spring that follows
+    /// `velocity` would creep by `omega dt / 2` of the way along a circle.
+    pub lag: DVec3,
+    /// Angular velocity of the sides about the normal at mid-step, 1/s: sides that stick turn the tangential
+    /// spring with them.
+    pub spin: f64,
     /// Acceleration there of the first side relative to the second by all forces of the last step, m/s2: of
     /// rigid bodies; the forces on particles are taken to be in equilibrium.
     pub acceleration: DVec3,
@@ -211,21 +218,22 @@ impl Interaction {
         if self.friction == 0.0 {
             return Tangential::default();
         }
-        let ContactState { normal, velocity, acceleration, .. } = state;
-        let slip = velocity - velocity.dot(*normal) * normal;
-        let mut spring = before.spring - before.spring.dot(*normal) * normal;
+        let ContactState { normal, velocity, lag, acceleration, spin, .. } = state;
+        let across = |of: &DVec3| of - of.dot(*normal) * normal;
+        let slip = across(velocity);
+        let mut spring = turned_about(*normal, spin * dt, before.spring);
         // A spring that gets softer keeps its stretch, one that gets stiffer its force: neither makes energy.
         if stiffness < before.stiffness {
             spring *= stiffness / before.stiffness;
         }
-        spring -= stiffness * dt * slip;
+        spring -= stiffness * dt * (slip + across(lag));
         let held = spring.length();
         if held >= limit {
             let spring = if held > 0.0 { spring * (limit / held) } else { DVec3::ZERO };
             return Tangential { spring, drag: DVec3::ZERO, slides: true };
         }
         let along = slip.normalize_or(spring.normalize_or_zero());
-        let drag_before = before.dashpot - before.dashpot.dot(*normal) * normal;
+        let drag_before = across(&before.dashpot);
         let taken_up = if is_held(&state.touch) { before.spring } else { before.spring + drag_before };
         let (late, pull) = ((slip + 0.5 * dt * acceleration).dot(along), (taken_up - spring).dot(along));
         let drag = -self.dashpot(stiffness, inverse_mass(along), late, pull, dt) * along;

@@ -6,6 +6,8 @@ mod interaction;
 
 mod sliding;
 
+mod spin;
+
 pub(super) mod energy;
 
 pub(super) mod time_step;
@@ -14,3 +16,4 @@ pub(super) use energy::{CHANGE_OF_SURFACE, ContactEnergy};
 pub(super) use history::{Histories, History, PairKey};
 pub(super) use interaction::{ContactState, Interaction, Losses};
 pub(super) use sliding::Sliding;
+pub(super) use spin::spin_of;

@@ -317,6 +317,8 @@ impl SkinOnTool {
                 area: 1.0,
                 arms: [DVec3::ZERO; 2],
                 velocity,
+                lag: -tool.lag_at(place(vertex), dt),
+                spin: tool.state.angular_velocity.dot(normal),
                 acceleration: DVec3::ZERO,
             };
             let mobility = vertex.mobility / pressed.area;

@@ -7,9 +7,9 @@ use super::facet_places::FacetPlaces;
 use super::foot::{Foot, NearFacets, slopes};
 use crate::contact::active::MinimumLength;
 use crate::contact::laws::Touch;
-use crate::contact::response::{ContactEnergy, ContactState, History, Interaction, Losses};
+use crate::contact::response::{ContactEnergy, ContactState, History, Interaction, Losses, spin_of};
 use crate::neighbors::Periodic;
-use crate::skins::{Patch, QuadratureRule};
+use crate::skins::{Patch, QuadratureRule, Vertex};
 
 /// How deep a point may be below the surface of the other body, over the mean spacing.
 const DEPTH: f64 = 0.5;
@@ -60,6 +60,8 @@ impl FacetPoint {
 struct PointMotion {
     /// Velocity, along the normal that at the foot and across it that at the point, m/s.
     velocity: DVec3,
+    /// Angular velocity of that material about the normal, 1/s.
+    spin: f64,
     /// From the foot to the point in the reference configuration of the other body, m.
     arm: DVec3,
     /// Inverse mass of both sides under a traction, m2/kg.
@@ -103,7 +105,7 @@ impl SkinSide<'_> {
         if interaction.is_elastic() {
             return self.spring(point, touch, before, energies);
         }
-        let PointMotion { velocity, arm, mobility } = self.motion(point, touch);
+        let PointMotion { velocity, spin, arm, mobility } = self.motion(point, touch);
         let mut losses = Losses::default();
         if !before.is_elastic() {
             losses.add_work(1.0, before, velocity, dt);
@@ -116,6 +118,8 @@ impl SkinSide<'_> {
             area: weight * area / usual,
             arms: [foot.x - self.place(&foot), DVec3::ZERO],
             velocity,
+            lag: DVec3::ZERO,
+            spin,
             acceleration: DVec3::ZERO,
         };
         let inverse_mass = |n: DVec3| mobility.dot(n * n) / (weight * area);
@@ -240,17 +244,21 @@ impl SkinSide<'_> {
         if self.interaction.is_elastic() {
             // Neither the velocity across the normal nor the mobility counts.
             let velocity = self.velocity(point) - self.velocity_at(&touch.foot);
-            return PointMotion { velocity, arm: DVec3::ZERO, mobility: DVec3::ZERO };
+            return PointMotion { velocity, spin: 0.0, arm: DVec3::ZERO, mobility: DVec3::ZERO };
         }
-        let gradient = (0..3).fold(DMat3::ZERO, |sum, k| sum + other[k].gradient * below[k]);
-        let arm = gradient.inverse() * (touch.foot.x - self.place(&touch.foot));
+        let of_other = |of: fn(&Vertex) -> DMat3| -> DMat3 {
+            (0..3).fold(DMat3::ZERO, |sum, k| sum + of(&other[k]) * below[k])
+        };
+        let inverse = of_other(|vertex| vertex.gradient).inverse();
+        let spin = spin_of(of_other(|vertex| vertex.rate) * inverse).dot(touch.foot.normal);
+        let arm = inverse * (touch.foot.x - self.place(&touch.foot));
         // The normal force acts at the foot, and the stretch between foot and point does not move it.
         let (at_foot, beyond) = (0..3).fold((DVec3::ZERO, DVec3::ZERO), |(foot, beyond), k| {
             (foot + below[k] * other[k].velocity, beyond + below[k] * (other[k].rate * arm))
         });
         let there = at_foot + beyond.reject_from_normalized(touch.foot.normal);
         let mobility = (0..3).map(|k| shares[k] * own[k].mobility + below[k] * other[k].mobility).sum();
-        PointMotion { velocity: self.velocity(point) - there, arm, mobility }
+        PointMotion { velocity: self.velocity(point) - there, spin, arm, mobility }
     }
 }
 

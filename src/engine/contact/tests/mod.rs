@@ -19,6 +19,7 @@ mod skin_energy;
 mod skins;
 mod spinning;
 mod thin_tools;
+mod turning;
 mod walls;
 
 use glam::DVec3;

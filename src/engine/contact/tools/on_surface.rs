@@ -159,6 +159,8 @@ impl OnSurface<'_> {
             area: share.share,
             arms: near.arms,
             velocity: motion.velocity(arm, place + shift) - tool.velocity_at(place),
+            lag: motion.lag(place + shift, *dt) - tool.lag_at(place, *dt),
+            spin: motion.spin_with(tool).dot(normal),
             acceleration: motion.acceleration(place + shift) - tool.acceleration_at(place),
         };
         let own = motion.inverse_mass(arm, place + shift);
@@ -225,6 +227,8 @@ impl OnSurface<'_> {
                 area: 1.0,
                 arms: history.arms,
                 velocity: motion.velocity(DVec3::ZERO, x) - tool.velocity_at(x),
+                lag: DVec3::ZERO,
+                spin: 0.0,
                 acceleration: DVec3::ZERO,
             };
             energies.removed += interaction.held(&state, *dt, history);
