@@ -120,7 +120,8 @@ pub fn sinking(
         if falls && density > densest && !held {
             let wall = name_of(&walls[0]);
             setup.warnings.push(format!(
-                "the rigid body `{name}` is denser than the fluid, and no contact holds it off a wall: it will fall through; add \
+                "the rigid body `{name}` is denser than the fluid, and no contact holds it off a wall: unless it is hollow and floats, it will \
+                 fall through; add \
                  `contacts: [Contact(between: (\"{name}\", \"{wall}\"), law: Penalty())]`"
             ));
         }
