@@ -1,5 +1,7 @@
 //! X4: grains in a flow wear a floor.
 
+use std::collections::HashMap;
+
 use anyhow::{Context, Result};
 use meshless_engine::formulations::fluid::FlowCloud;
 use meshless_engine::glam::DVec3;
@@ -182,19 +184,40 @@ fn worn(simulation: &Simulation, floor: BodyId) -> Result<f64> {
 }
 
 /// Mean deviation of the height of the floor from its mean, m: a second implementation of the probe, column
-/// by column.
+/// by column. What has come off the floor and drifts or lies on it is no part of its surface.
 fn roughness(simulation: &Simulation, floor: BodyId, spacing: f64) -> Result<f64> {
-    let (view, rows) = simulation.world().body_view(floor);
-    let (position, removed) = (view.read::<Position>()?, view.read::<Removed>()?);
+    let (view, _) = simulation.world().body_view(floor);
+    let position = view.read::<Position>()?;
     let count = (WIDTHS[1] / spacing).round() as usize;
     let mut heights = vec![0.0f64; count];
-    for row in rows.filter(|&row| removed[row] == Removed::NO) {
+    for row in attached_rows(simulation, floor, spacing)? {
         let x = position[row].0.x.rem_euclid(WIDTHS[1]);
         let k = ((x / spacing) as usize).min(count - 1);
         heights[k] = heights[k].max(position[row].0.y);
     }
     let mean = heights.iter().sum::<f64>() / count as f64;
     Ok(heights.iter().map(|z| (z - mean).abs()).sum::<f64>() / count as f64)
+}
+
+/// Rows of the particles that hang together with the base of the floor, by particles that were next to each
+/// other on its square lattice and have not failed.
+fn attached_rows(simulation: &Simulation, floor: BodyId, spacing: f64) -> Result<Vec<usize>> {
+    let (view, rows) = simulation.world().body_view(floor);
+    let (reference, removed) = (view.read::<ReferencePosition>()?, view.read::<Removed>()?);
+    let damage = view.read::<Damage>()?;
+    let count = (WIDTHS[1] / spacing).round() as i64;
+    let cell = |x: DVec3| ((x.x / spacing).floor() as i64, (x.y / spacing).floor() as i64);
+    let intact = rows.filter(|&row| removed[row] == Removed::NO && damage[row].0 < 1.0);
+    let mut unseen: HashMap<_, _> = intact.map(|row| (cell(reference[row].0), row)).collect();
+    let mut next: Vec<_> = (0..count).map(|i| (i, 0)).collect();
+    let mut attached = Vec::new();
+    while let Some((i, j)) = next.pop() {
+        if let Some(row) = unseen.remove(&(i.rem_euclid(count), j)) {
+            attached.push(row);
+            next.extend((0..9).map(|k| (i + k % 3 - 1, j + k / 3 - 1)));
+        }
+    }
+    Ok(attached)
 }
 
 /// Rows of the particles that have been removed.
