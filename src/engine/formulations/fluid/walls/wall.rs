@@ -30,7 +30,7 @@ pub struct Wall {
     /// to the wall.
     pub suction: bool,
     /// Velocity that the surface has beside that of its particles, such as that of a conveyor belt \[m/s\],
-    /// for a fluid that sticks to it.
+    /// for a fluid that sticks to it; it keeps its direction in space, also where the wall turns.
     pub surface_velocity: Vec3,
 }
 
