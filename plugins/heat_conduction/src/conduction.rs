@@ -2,7 +2,8 @@
 //!
 //! `m_i c dT_i/dt = sum_j 2 k V_i V_j w_ij g_ij (T_j - T_i)`, `g_ij = max((g_i + g_j) / 2, 0)`, with present
 //! volumes and pair vectors, and g_i from the [neighborhood](crate::neighborhood) of a particle. Heat never
-//! flows from cold to hot.
+//! flows from cold to hot. Beside supports m_i and V_i count with the share that a particle has of the heat,
+//! which is that of its energy; one without a share, in the plane of a clamp, follows its neighbours.
 
 use meshless_engine::bytemuck;
 use meshless_engine::parallel::{BlockSum, for_each_block};
@@ -40,6 +41,7 @@ pub(crate) fn add_system(sim: &mut SimBuilder<'_>, conductors: Vec<Conductor>) {
         conductors,
         axes,
         volumes: PresentVolumes::default(),
+        weighted: Vec::new(),
         shapes: Vec::new(),
         gains: Vec::new(),
         sums: Vec::new(),
@@ -65,15 +67,19 @@ struct Conduction {
     conductors: Vec<Conductor>,
     axes: usize,
     volumes: PresentVolumes,
+    /// The same, times the shares of the particles.
+    weighted: Vec<f64>,
     /// Neighbourhoods of the rows of a body.
     shapes: Vec<ConductingNeighborhood>,
     gains: Vec<Gain>,
     sums: Vec<Heat>,
 }
 
-/// Heat gain of a particle.
+/// Heat gain of a whole particle, of which a share counts.
 #[derive(Clone, Copy, Default)]
 struct Gain {
+    /// Weight of its place in the heat of the body: not 1 beside supports.
+    share: f64,
     /// Heat in a second, W.
     power: f64,
     /// Rate at which it would come to the temperature of its neighbours, W/K.
@@ -126,10 +132,14 @@ impl Conduction {
         let mut now = view.write::<Temperature>()?;
         let mut last = view.write::<ConductedTemperature>()?;
         let volumes = self.volumes.of_body(&view, &rows)?;
+        let solid = &*solid;
+        self.weighted.resize(volumes.len(), 0.0);
+        fill_rows(&mut self.weighted[rows.clone()], rows.start, |row| solid.share(row) * volumes[row]);
         self.shapes.resize(rows.len(), ConductingNeighborhood::NONE);
         self.gains.resize(rows.len(), Gain::default());
-        let pairs = PresentPairs { solid: &*solid, position: bytemuck::cast_slice(&position), volumes };
-        let field = HeatField { pairs, first: rows.start, axes: self.axes };
+        let (position, weighted) = (bytemuck::cast_slice(&position), &self.weighted[..]);
+        let pairs = PresentPairs { solid, position, volumes: weighted };
+        let field = HeatField { pairs, volumes, first: rows.start, axes: self.axes };
         fill_rows(&mut self.shapes, rows.start, |row| field.shape(row));
         let (shapes, temperature) = (&self.shapes[..], &now[..]);
         fill_rows(&mut self.gains, rows.start, |row| field.gain(row, shapes, temperature, of.conductivity));
@@ -140,17 +150,17 @@ impl Conduction {
             let mut sum = Heat::default();
             for (((now, last), gain), mass) in now.iter_mut().zip(last).zip(gains).zip(mass) {
                 let capacity = mass.0 * of.specific_heat;
-                sum.come += capacity * (now.0 - last.0);
+                sum.come += gain.share * capacity * (now.0 - last.0);
                 let change = dt * gain.power;
-                sum.conducted += change;
-                sum.exchanged += change.abs();
+                sum.conducted += gain.share * change;
+                sum.exchanged += gain.share * change.abs();
                 now.0 += change / capacity;
                 last.0 = now.0;
                 sum.fastest = sum.fastest.max(gain.rate / capacity);
             }
             sum
         });
-        drop((now, last, solid));
+        drop((now, last));
         let heat = step.ledger.account("heat", AccountKind::Stored);
         step.ledger.add(heat, of.body, found.come + found.conducted);
         step.ledger.set_resolution(DIGITS * found.exchanged);
@@ -166,7 +176,10 @@ impl Conduction {
 
 /// The neighbourhoods of a body.
 struct HeatField<'a> {
+    /// The pairs, with the share of its volume that each particle has beside supports.
     pairs: PresentPairs<'a>,
+    /// Present volumes of the rows of the phase, m3.
+    volumes: &'a [f64],
     /// First row of the body.
     first: usize,
     axes: usize,
@@ -185,8 +198,8 @@ impl HeatField<'_> {
         temperature: &[Temperature],
         conductivity: f64,
     ) -> Gain {
-        let mut gain = Gain::default();
-        let (own, volume) = (&shapes[row - self.first], self.pairs.volumes[row]);
+        let mut gain = Gain { share: self.pairs.solid.share(row), ..Gain::default() };
+        let (own, volume) = (&shapes[row - self.first], self.volumes[row]);
         self.pairs.of(row, |PresentPair { row: j, signs, x_ij, weight }| {
             // An image sees the pair mirrored.
             let other = shapes[j - self.first].weight(self.axes, signs * x_ij);

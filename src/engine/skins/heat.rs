@@ -2,7 +2,8 @@
 
 use super::patch::Patch;
 use crate::parallel::{Picked, sum_over_blocks};
-use crate::world::{Mass, Temperature};
+use crate::solids::HeatCapacity;
+use crate::world::Temperature;
 
 impl Patch {
     /// Heats the point of a facet with these shares of its vertices by that much, J.
@@ -21,22 +22,31 @@ impl Patch {
         }
     }
 
-    /// Warms the particles of the body, of that specific heat, J/(kg K).
-    pub fn warm(&self, specific_heat: f64, mass: &[Mass], temperature: &mut [Temperature]) {
+    /// Warms the particles of the body, of those heat capacities.
+    pub fn warm(&self, capacity: &HeatCapacity<'_>, temperature: &mut [Temperature]) {
         if !self.has_heat {
             return;
         }
+        let heat = |k: usize| -> f64 {
+            let ends = self.starts[k] as usize..self.starts[k + 1] as usize;
+            let share =
+                |k: usize| self.following.get(k).map_or(self.ends[k].weight, |follower| follower.share);
+            ends.map(|k| share(k) * self.heats[self.ends[k].vertex as usize]).sum()
+        };
         let rows = Picked::new(self.particles(), temperature);
         sum_over_blocks(rows, &|first, mut rows: Picked<'_, Temperature>| {
             for k in 0..rows.len() {
-                let ends = self.starts[first + k] as usize..self.starts[first + k + 1] as usize;
-                let share =
-                    |k: usize| self.following.get(k).map_or(self.ends[k].weight, |follower| follower.share);
-                let heat: f64 = ends.map(|k| share(k) * self.heats[self.ends[k].vertex as usize]).sum();
-                if heat != 0.0 {
-                    rows.row(k).0 += heat / (mass[rows.number(k)].0 * specific_heat);
+                let (number, heat) = (rows.number(k), heat(first + k));
+                if heat != 0.0 && capacity.has(number) {
+                    rows.row(k).0 += capacity.rise(number, heat);
                 }
             }
         });
+        for (k, number) in self.particles().iter().enumerate() {
+            let number = *number as usize;
+            if !capacity.has(number) {
+                capacity.warm(number, heat(k), temperature);
+            }
+        }
     }
 }

@@ -33,6 +33,12 @@ pub trait SolidPhase: Any + Send + Sync {
     /// removed.
     fn neighbors(&self, row: usize, f: &mut dyn FnMut(usize, f64));
 
+    /// The weight of the place of a particle in integrals over its body, such as those of energy and heat:
+    /// usually 1, different beside supports.
+    fn share(&self, _row: usize) -> f64 {
+        1.0
+    }
+
     /// Whether a particle has no deformation gradient since it has lost neighbours: it is no part of a solid.
     fn has_lost_its_fit(&self, _row: usize) -> bool {
         false

@@ -8,8 +8,8 @@ use super::filter::BLOCKS_OF_TEST;
 use crate::contact::bodies::Members;
 use crate::contact::response::PairKey;
 use crate::parallel::{Maximum, Picked, for_each_block, for_each_block_in_tasks, sum_over_blocks};
-use crate::solids::{LocalMotion, SolidPhase};
-use crate::world::{Force, Mass, Temperature};
+use crate::solids::{HeatCapacity, LocalMotion, SolidPhase};
+use crate::world::{Force, Temperature};
 
 /// In the place of a number in the list for particles that no candidate names.
 const NONE: u32 = u32::MAX;
@@ -202,10 +202,10 @@ impl ContactNodes {
         solid.add_couples(first, &self.nodes, &self.couples);
     }
 
-    /// Warms the particles of a body by what friction has given them.
-    pub fn warm(&self, specific_heat: f64, mass: &[Mass], temperature: &mut [Temperature]) {
+    /// Warms the particles of a body, of those heat capacities, by what friction has given them.
+    pub fn warm(&self, capacity: &HeatCapacity<'_>, temperature: &mut [Temperature]) {
         for (&node, heat) in self.nodes.iter().zip(&self.heat).filter(|(_, heat)| **heat != 0.0) {
-            temperature[node as usize].0 += heat / (mass[node as usize].0 * specific_heat);
+            capacity.warm(node as usize, *heat, temperature);
         }
     }
 

@@ -12,7 +12,7 @@ use crate::plugin::SimBuilder;
 use crate::removal::LEAVING;
 use crate::rigid::{RIGID_BODIES, RigidBodies, Wrench};
 use crate::schedule::{AccountKind, Mode, Resources, Run, Shared, Stage, Step, StepError, System};
-use crate::solids::{CORRECTED_STRESS, PACKED_SOLID};
+use crate::solids::{CORRECTED_STRESS, HeatCapacity, PACKED_SOLID};
 use crate::world::{
     Body, BodyId, BodySet, Damage, DeformationGradient, Force, Mass, Mobility, Position, ReferencePosition,
     Removed, Temperature, Velocity,
@@ -81,7 +81,9 @@ pub(in crate::contact) fn add(sim: &mut SimBuilder<'_>, planned: Planned, bodies
     );
     let push = move |step: &mut Step<'_>| step.resources.of(contacts).push(step);
     let system = System::new(Stage::External, CONTACT_FORCE, push).on_phases(phases).adds::<Force>();
-    sim.add_system(if heats { system.reads::<Mass>().adds::<Temperature>() } else { system });
+    let warms =
+        |system: System| system.reads::<Mass>().adds::<Temperature>().touches(PACKED_SOLID, Mode::ReadsNear);
+    sim.add_system(if heats { warms(system) } else { system });
 }
 
 /// The contacts of the scene, which two systems share.
@@ -235,7 +237,9 @@ impl Contacts {
             contact_nodes.add_forces(&mut view.write::<Force>()?[rows.clone()]);
             if let Some(specific_heat) = self.specific_heat(body) {
                 let (mass, mut temperature) = (view.read::<Mass>()?, view.write::<Temperature>()?);
-                contact_nodes.warm(specific_heat, &mass[rows.clone()], &mut temperature[rows]);
+                let solid = step.resources.solid(step.world.body(body).phase);
+                let capacity = HeatCapacity::of_body(specific_heat, &mass, rows.start, solid.as_deref());
+                contact_nodes.warm(&capacity, &mut temperature[rows]);
             }
         }
         for patch in self.acting().flat_map(Touching::patches) {
@@ -244,7 +248,9 @@ impl Contacts {
             patch.add_forces(&mut view.write::<Force>()?[rows.clone()]);
             if let Some(specific_heat) = self.specific_heat(body) {
                 let (mass, mut temperature) = (view.read::<Mass>()?, view.write::<Temperature>()?);
-                patch.warm(specific_heat, &mass[rows.clone()], &mut temperature[rows]);
+                let solid = step.resources.solid(step.world.body(body).phase);
+                let capacity = HeatCapacity::of_body(specific_heat, &mass, rows.start, solid.as_deref());
+                patch.warm(&capacity, &mut temperature[rows]);
             }
         }
         Ok(())

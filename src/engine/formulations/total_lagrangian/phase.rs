@@ -98,6 +98,10 @@ impl SolidPhase for PackedRows {
         self.bonds.for_each_present(&self.sites, row, f);
     }
 
+    fn share(&self, row: usize) -> f64 {
+        self.bonds.carried.get(row).map_or(1.0, |share| *share)
+    }
+
     fn has_lost_its_fit(&self, row: usize) -> bool {
         self.bonds.inverse_moment[row] == Sym3::ZERO
             && self.bonds.row(row).any(|(j, _)| !self.sites[j].is_present())

@@ -134,6 +134,10 @@ impl SolidPhase for UpdatedRows {
         self.bonds.for_each_present(&self.sites, row, f);
     }
 
+    fn share(&self, row: usize) -> f64 {
+        self.bonds.carried.get(row).map_or(1.0, |share| *share)
+    }
+
     fn local_motion(
         &self,
         row: usize,
