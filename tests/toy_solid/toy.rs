@@ -238,7 +238,7 @@ impl Run for Stress {
         (packed.fits, packed.stresses) = (fits, stresses);
         packed.renew_ghosts();
         solids.book(step)?;
-        solids.limit(step, &packed.stable_step)
+        solids.limit(step, &packed.stable_step, &[])
     }
 
     fn save(&self) -> Vec<u8> {

@@ -13,7 +13,7 @@ use super::hessian::{self, HessianDifference, HessianForm, HessianResidual, Hess
 use super::pair_control::{self, PairControl};
 use super::refit::Refits;
 use super::stable_step::StepEstimate;
-use super::stretches;
+use super::stretches::{self, Resisting};
 use crate::materials::{MAX_STATE, SolidLaw, StateColumns, StateRows, Stretches};
 use crate::parallel::{Split, for_each_block, for_each_own_block};
 use crate::plugin::{BodyPlan, ForBodies, Offer, SetupError, SimBuilder};
@@ -287,13 +287,18 @@ impl SolidBodies {
     }
 
     /// Proposes the stable step of each body, s: that of its undeformed state times a factor of its
-    /// stretches.
+    /// stretches. The rows of the phase carry `shares` of their stress; empty: all of it.
     ///
     /// # Errors
     /// The phase has no deformation gradient.
-    pub fn limit(&mut self, step: &mut Step<'_>, undeformed: &[f64]) -> Result<(), StepError> {
-        self.limit_by(step, undeformed, |_, law, gradient, damage| {
-            law.stable_step_factor(&stretches::of_body(gradient, damage))
+    pub fn limit(
+        &mut self,
+        step: &mut Step<'_>,
+        undeformed: &[f64],
+        shares: &[f64],
+    ) -> Result<(), StepError> {
+        self.limit_by(step, (undeformed, shares), |_, law, gradient, resisting| {
+            law.stable_step_factor(&stretches::of_body(gradient, resisting))
         })
     }
 
@@ -304,8 +309,8 @@ impl SolidBodies {
     /// The phase has no deformation gradient.
     pub fn limit_from_present(&mut self, step: &mut Step<'_>, present: &[f64]) -> Result<(), StepError> {
         let axes = step.world.dimension().count() as f64;
-        self.limit_by(step, present, |_, law, gradient, damage| {
-            let Stretches { smallest_volume, largest_volume, .. } = stretches::of_body(gradient, damage);
+        self.limit_by(step, (present, &[]), |_, law, gradient, resisting| {
+            let Stretches { smallest_volume, largest_volume, .. } = stretches::of_body(gradient, resisting);
             let smallest = smallest_volume.max(0.0).powf(1.0 / axes);
             law.stable_step_factor(&Stretches { smallest, largest: 1.0, smallest_volume, largest_volume })
         })
@@ -321,14 +326,15 @@ impl SolidBodies {
         &mut self,
         step: &mut Step<'_>,
         unstressed: &[f64],
+        shares: &[f64],
         reference: impl Fn(usize) -> Option<&'r [DMat3]>,
     ) -> Result<(), StepError> {
-        self.limit_by(step, unstressed, |k, law, gradient, damage| {
-            let stretches = stretches::of_body(gradient, damage);
+        self.limit_by(step, (unstressed, shares), |k, law, gradient, resisting| {
+            let stretches = stretches::of_body(gradient, resisting);
             match reference(k) {
                 None => law.stable_step_factor(&stretches),
                 Some(reference) => {
-                    stretches::min_stretch_since(gradient, reference, damage) / law.wave_factor(&stretches)
+                    stretches::min_stretch_since(gradient, reference, resisting) / law.wave_factor(&stretches)
                 }
             }
         })
@@ -337,8 +343,8 @@ impl SolidBodies {
     fn limit_by(
         &mut self,
         step: &mut Step<'_>,
-        stable: &[f64],
-        factor: impl Fn(usize, &dyn SolidLaw, &[DeformationGradient], Option<&[Damage]>) -> f64,
+        (stable, shares): (&[f64], &[f64]),
+        factor: impl Fn(usize, &dyn SolidLaw, &[DeformationGradient], Resisting<'_>) -> f64,
     ) -> Result<(), StepError> {
         let view = step.world.phase(self.phase);
         let gradient = view.read_own::<DeformationGradient>()?;
@@ -346,8 +352,8 @@ impl SolidBodies {
         for (k, (own, stable_step)) in self.bodies.iter_mut().zip(stable).enumerate() {
             let body = step.world.body(own.id);
             if step.part.number().is_multiple_of(STRETCH_INTERVAL) {
-                let damage = damage.as_deref().map(|damage| &damage[body.rows.clone()]);
-                own.stretch_factor = factor(k, &*own.law, &gradient[body.rows.clone()], damage);
+                let resisting = Resisting::of_rows(body.rows.clone(), damage.as_deref(), shares);
+                own.stretch_factor = factor(k, &*own.law, &gradient[body.rows.clone()], resisting);
             }
             let by = fmt::from_fn(|f| own.write_cause(f, &body.name));
             step.limits.propose(stable_step * own.stretch_factor, by);

@@ -232,6 +232,20 @@ thread_local! {
 const BRACE: f64 = 0.2;
 
 impl SolidBlock {
+    /// Takes the share of its stress that each particle carries; returns whether all carry all of it. Beside
+    /// the plane of a clamp the fit of what carries nothing may invert, where laws have no meaning.
+    fn take_shares(&mut self, deformation: &mut [DMat3], carried: impl Fn(usize) -> f64) -> bool {
+        let mut is_whole = true;
+        for (k, (share, f)) in self.share.iter_mut().zip(deformation).enumerate() {
+            *share = carried(k);
+            is_whole &= *share == 1.0;
+            if *share == 0.0 && f.determinant() <= 0.0 {
+                *f = DMat3::IDENTITY;
+            }
+        }
+        is_whole
+    }
+
     /// Multiplies energy and modulus by the share that a particle carries; with the full values the rest
     /// would resist rotation.
     fn carry(&mut self, k: usize) {
@@ -304,11 +318,7 @@ impl Constitutive<'_> {
         block.stress[..before].copy_from_slice(&rows.stress[..before]);
         block.strength[..n].fill(f64::INFINITY);
         block.plastic_work[..n].fill(0.0);
-        let mut is_whole = true;
-        for (k, share) in block.share[..n].iter_mut().enumerate() {
-            *share = carried(k);
-            is_whole &= *share == 1.0;
-        }
+        let is_whole = block.take_shares(rows.deformation, carried);
         self.law.stress(&mut StressRows {
             dt: self.dt,
             deformation: rows.deformation,

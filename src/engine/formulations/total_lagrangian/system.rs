@@ -130,7 +130,7 @@ impl Run for Deformation {
             self.pass(step.world, &mut packed, SolidPart::of(step))?;
             self.solids.book(step)?;
         }
-        self.solids.limit(step, &packed.stable_step)
+        self.solids.limit(step, &packed.stable_step, &packed.bonds.carried)
     }
 
     fn save(&self) -> Vec<u8> {

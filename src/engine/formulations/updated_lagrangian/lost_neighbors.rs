@@ -5,13 +5,15 @@
 //! deformation gradient is then singular, or nearly so, and the frequency of the particle unbounded. Such a
 //! particle permanently gets a larger support radius; if that is not enough, it carries no stress.
 
+use hecs::ArchetypeColumn;
+
 use super::phase::UpdatedRows;
 use crate::formulations::bonded::{BodyKernel, Ellipsoid};
 use crate::linalg::{Eigen, Sym3};
 use crate::notation::quantity;
 use crate::plugin::Setup;
 use crate::schedule::{Step, raise_warning};
-use crate::world::{BodyId, Damage, SupportRadius, World};
+use crate::world::{BodyId, Damage, MissingColumn, ReferencePosition, Removed, SupportRadius, World};
 
 /// Smallest eigenvalue of a moment matrix, which is 1 inside of a body, 1/2 at a face and 1/8 in a corner,
 /// below which the support grows.
@@ -68,14 +70,18 @@ impl UpdatedRows {
 
     /// Number of particles of a body that are there and carry no stress for want of neighbours.
     pub fn released(&self, world: &World, body: BodyId) -> usize {
+        self.released_rows(world, body).count()
+    }
+
+    fn released_rows(&self, world: &World, body: BodyId) -> impl Iterator<Item = usize> {
         let rows = world.body(body).rows.clone();
         let hidden = self.held.hidden_of(body);
-        let is_lost = |row: &&u32| {
-            let row = **row as usize;
+        let is_lost = move |row: &usize| {
+            let row = *row;
             let number = || (row - rows.start) as u32;
             rows.contains(&row) && self.volume[row] > 0.0 && hidden.binary_search(&number()).is_err()
         };
-        self.bonds.free.iter().filter(is_lost).count()
+        self.bonds.free.iter().map(|row| *row as usize).filter(is_lost)
     }
 
     /// Says of every body how many of its particles have too few neighbours from the start on.
@@ -91,10 +97,16 @@ impl UpdatedRows {
         }
     }
 
-    /// Says of every body how many of its particles an update has let go of; the last word counts.
-    pub fn warn_of_released(&self, step: &mut Step<'_>) {
+    /// Says of every body how many of its particles an update has let go of; the last word counts. What has
+    /// failed, and what has lost neighbours by failure, is expected.
+    pub fn warn_of_released(&self, step: &mut Step<'_>) -> Result<(), MissingColumn> {
         for (kernel, at_start) in self.kernels.iter().zip(&self.released_at_start) {
-            let now = self.released(step.world, kernel.body);
+            if self.released(step.world, kernel.body) <= *at_start {
+                continue;
+            }
+            let cracks = CrackPlaces::of_body(step.world, kernel.body)?;
+            let is_expected = |row: usize| cracks.as_ref().is_some_and(|cracks| cracks.has_at(row));
+            let now = self.released_rows(step.world, kernel.body).filter(|&row| !is_expected(row)).count();
             if now <= *at_start {
                 continue;
             }
@@ -102,8 +114,7 @@ impl UpdatedRows {
                 "particles of body `{}` have lost their neighbours and carry no stress:",
                 step.world.body(kernel.body).name
             );
-            let can_fail = step.world.phase(step.world.body(kernel.body).phase).has::<Damage>();
-            let help = match can_fail {
+            let help = match cracks.is_some() {
                 true => "the body has been torn there before its material failed",
                 false => {
                     "smaller spacings or a larger `support` keep the body together, the plugin `failure` lets it break"
@@ -114,6 +125,32 @@ impl UpdatedRows {
                 format!("of them at {}; {help}", quantity(time, "s"))
             });
         }
+        Ok(())
+    }
+}
+
+/// The particles of a body that have failed or have been removed.
+struct CrackPlaces<'a> {
+    places: ArchetypeColumn<'a, ReferencePosition>,
+    support: ArchetypeColumn<'a, SupportRadius>,
+    lost: Vec<usize>,
+}
+
+impl<'a> CrackPlaces<'a> {
+    /// None for a body that cannot fail.
+    fn of_body(world: &'a World, body: BodyId) -> Result<Option<Self>, MissingColumn> {
+        let (view, rows) = world.body_view(body);
+        let Ok(damage) = view.read::<Damage>() else { return Ok(None) };
+        let removed = view.read::<Removed>()?;
+        let lost = rows.filter(|&row| damage[row].0 >= 1.0 || removed[row] != Removed::NO).collect();
+        let (places, support) = (view.read::<ReferencePosition>()?, view.read::<SupportRadius>()?);
+        Ok(Some(Self { places, support, lost }))
+    }
+
+    /// Whether a particle is one of them, or had one as its neighbour at the start.
+    fn has_at(&self, row: usize) -> bool {
+        let (place, reach) = (self.places[row].0, self.support[row].0);
+        self.lost.iter().any(|&lost| self.places[lost].0.distance(place) <= reach)
     }
 }
 

@@ -267,7 +267,7 @@ impl UpdatedSolids {
         // States of laws have advanced by this step already.
         self.pass(step.world, packed, SolidPart::REPEATED, Some(&kept.fit))?;
         self.solids.book_repeated(step)?;
-        packed.warn_of_released(step);
+        packed.warn_of_released(step)?;
         let mut after = std::mem::take(&mut packed.force);
         self.write_forces(step.world, packed, &mut after)?;
         // At the start there is no kick before the first one.
@@ -457,10 +457,10 @@ impl Run for UpdatedSolids {
             self.has_lost = has_lost;
         }
         self.due = due;
-        let UpdatedRows { stable_step, gradient, kernels, follows, .. } = &*packed;
+        let UpdatedRows { stable_step, gradient, kernels, follows, bonds, .. } = &*packed;
         let world = step.world;
         let since = |k: usize| follows[k].then(|| &gradient[world.body(kernels[k].body).rows.clone()]);
-        self.solids.limit_since(step, stable_step, since)
+        self.solids.limit_since(step, stable_step, &bonds.carried, since)
     }
 
     fn save(&self) -> Vec<u8> {
