@@ -1,6 +1,6 @@
 //! Loads on rigid bodies act on the surface; the particles lie half a spacing inside.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 use super::part::Part;
 use crate::parallel::{BlockSum, sum_over_blocks};
@@ -120,13 +120,13 @@ pub(super) fn push_beside(part: &Part, arms: &[DVec3], [last, next]: [&[DVec3]; 
             sums.last.push(left.rotation * arm, *last);
             let turned = turn * arm;
             sums.next.push(turned, *next);
-            sums.moments += DMat3::from_cols(turned * next.x, turned * next.y, turned * next.z);
+            sums.add_moments([next.x, next.y, next.z].map(|force| turned * force));
             sums.beside += (turn * beside).cross(*next);
         }
         sums
     });
     body.push(&Wrench { force: DVec3::ZERO, torque: sums.beside });
-    body.load_moments += sums.moments;
+    (0..3).for_each(|axis| body.load_moments[axis] += sums.moments[axis]);
     let RigidState { velocity, angular_velocity, .. } = body.state;
     let spent = |sum: Wrench, spin: DVec3| 0.5 * (sum.force.dot(velocity) + sum.torque.dot(spin));
     spent(sums.last, left.angular_velocity) + spent(sums.next, angular_velocity)
@@ -139,8 +139,14 @@ struct OnRigid {
     next: Wrench,
     /// Torque at the end of the step that the forces have about their particles, N m.
     beside: DVec3,
-    /// Sum of arm (x) force at the end of the step, N m.
-    moments: DMat3,
+    /// Sum of the arms times the components of the forces at the end of the step, N m.
+    moments: [DVec3; 3],
+}
+
+impl OnRigid {
+    fn add_moments(&mut self, moments: [DVec3; 3]) {
+        self.moments.iter_mut().zip(moments).for_each(|(sum, moment)| *sum += moment);
+    }
 }
 
 impl BlockSum for OnRigid {
@@ -148,6 +154,6 @@ impl BlockSum for OnRigid {
         self.last.add(&next.last);
         self.next.add(&next.next);
         self.beside += next.beside;
-        self.moments += next.moments;
+        self.add_moments(next.moments);
     }
 }

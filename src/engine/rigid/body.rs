@@ -2,7 +2,7 @@
 
 use std::ops::{Deref, DerefMut};
 
-use glam::{DMat3, DQuat, DVec3};
+use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
 use super::constraint::Constraint;
@@ -87,8 +87,9 @@ pub struct RigidBody {
     contact: Wrench,
     /// Stiffness of all contacts of the step, about the centre.
     pub(crate) contact_stiffness: Wrench,
-    /// Sum of arm (x) force of the loads of the step that keep their direction, about the centre, N m.
-    pub(crate) load_moments: DMat3,
+    /// Sum of the arms about the centre times the components of the forces, N m, of the loads of a step
+    /// whose direction is kept.
+    pub(crate) load_moments: [DVec3; 3],
     /// How it stood and turned before it moved in this step.
     pub(crate) left: Turning,
     /// What drives have added to the velocity of the centre, m/s2, and to the angular velocity, 1/s2, in the
@@ -119,7 +120,7 @@ impl RigidBody {
             state,
             contact,
             contact_stiffness: Wrench::default(),
-            load_moments: DMat3::ZERO,
+            load_moments: [DVec3::ZERO; 3],
             left: Turning { rotation: state.rotation, angular_velocity: state.angular_velocity },
             gained: [DVec3::ZERO; 2],
         }
@@ -178,17 +179,17 @@ impl RigidBody {
         self.constraint.is_complete()
     }
 
-    /// Bound of the squared frequency, 1/s2, with which it swings in loads whose sum of arm (x) force about
-    /// its centre is `moments`, N m, and of the angular acceleration that they cause.
-    pub(super) fn swing(&self, moments: DMat3) -> f64 {
+    /// Bound of the squared frequency, 1/s2, with which it swings in loads of those moments, N m, and of the
+    /// angular acceleration that they cause.
+    pub(super) fn swing(&self, moments: [DVec3; 3]) -> f64 {
         let response = |torque: DVec3| {
             self.constraint.angular_response(&self.inertia, self.state.rotation, torque).length()
         };
-        let [x, y, z] = [moments.x_axis, moments.y_axis, moments.z_axis];
+        let [x, y, z] = moments;
         let torque = DVec3::new(z.y - y.z, x.z - z.x, y.x - x.y);
         // Turned by a small angle d, an arm r changes the torque by (d x r) x f = r (f . d) - d (r . f).
         let trace = x.x + y.y + z.z;
-        let change = |axis: usize| response(moments.col(axis) - trace * DVec3::AXES[axis]);
+        let change = |axis: usize| response(moments[axis] - trace * DVec3::AXES[axis]);
         let first = if self.constraint.dimension == Dimension::Two { 2 } else { 0 };
         (first..3).map(change).fold(0.0, f64::max) + response(torque)
     }

@@ -240,8 +240,7 @@ impl NodeMotion<'_> {
         }
     }
 
-    /// Angular velocity of what touches a tool, 1/s: the mean of two rigid bodies, and that of the tool beside
-    /// a particle.
+    /// Angular velocity of what touches a tool, 1/s: the mean of two bodies; of the tool beside a particle.
     pub fn spin_with(&self, tool: &RigidBody) -> DVec3 {
         let of_tool = tool.state.angular_velocity;
         match self {

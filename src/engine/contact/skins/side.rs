@@ -247,7 +247,7 @@ impl SkinSide<'_> {
             return PointMotion { velocity, spin: 0.0, arm: DVec3::ZERO, mobility: DVec3::ZERO };
         }
         let of_other = |of: fn(&Vertex) -> DMat3| -> DMat3 {
-            (0..3).fold(DMat3::ZERO, |sum, k| sum + of(&other[k]) * below[k])
+            (0..3).fold(DMat3::ZERO, |sum, k| sum + of(other[k]) * below[k])
         };
         let inverse = of_other(|vertex| vertex.gradient).inverse();
         let spin = spin_of(of_other(|vertex| vertex.rate) * inverse).dot(touch.foot.normal);
