@@ -9,8 +9,8 @@ use crate::world::{BodyId, Mass, Position};
 /// Angular velocity, 1/s.
 const SPIN: f64 = 4.0;
 
-/// A soft block that stands on a turntable, 0.2 m beside its axis, and starts with its velocity: friction of 0.6
-/// holds it where 0.33 would do.
+/// A soft block that stands on a turntable, 0.2 m beside its axis, and starts with its velocity: friction of
+/// 0.6 holds it where 0.33 would do.
 fn turntable(block: &str, surface: &str, turns: f64) -> Simulation {
     simulation(&format!(
         r#"(dimension: Three, gravity: (0, 0, -9.81),
@@ -33,8 +33,8 @@ fn middle(sim: &Simulation) -> DVec3 {
     sum / rows.map(|row| mass[row].0).sum::<f64>()
 }
 
-/// A spring that kept its direction in space would let the block creep by its stretch in every radian, and one
-/// that followed the velocities of the mid-step at the places of the end by `omega dt / 2` of the way.
+/// A spring that kept its direction in space would let the block creep by its stretch in every radian, and
+/// one that followed the velocities of the mid-step at the places of the end by `omega dt / 2` of the way.
 #[test]
 fn a_block_that_sticks_to_a_turntable_does_not_creep() {
     for (block, surface) in
