@@ -302,12 +302,15 @@ impl SkinOnTool {
         contacts.find(touching, |(vertex, _), (), (): &mut ()| Some(patch.number(vertex)));
         let place = |vertex: &Vertex| sides.near(vertex.place, tool);
         let velocity = |vertex: &Vertex| vertex.velocity - tool.velocity_at(place(vertex));
+        let lag = |vertex: &Vertex| -tool.lag_at(place(vertex), dt);
+        // With the arms of the beginning of the step, where the force of the last one acted.
+        let at_start = |vertex: &Vertex| velocity(vertex) + 2.0 * lag(vertex);
         let respond = |_: PairKey, number: &u32, before: &History, energies: &mut ContactEnergy| {
             let (vertex, pressed) = (&patch.vertices()[*number as usize], &pressed[*number as usize]);
             let velocity = velocity(vertex);
             let mut losses = Losses::default();
             if !before.is_elastic() {
-                losses.add_work(1.0, before, velocity, dt);
+                losses.add_work(1.0, before, at_start(vertex), dt);
             }
             let normal = pressed.force.normalize_or_zero();
             let state = ContactState {
@@ -317,7 +320,7 @@ impl SkinOnTool {
                 area: 1.0,
                 arms: [DVec3::ZERO; 2],
                 velocity,
-                lag: -tool.lag_at(place(vertex), dt),
+                lag: lag(vertex),
                 spin: tool.state.angular_velocity.dot(normal),
                 acceleration: DVec3::ZERO,
             };
@@ -333,7 +336,7 @@ impl SkinOnTool {
         };
         let end = |(vertex, _): PairKey, history: &History, energies: &mut ContactEnergy| {
             if !history.is_elastic() && patch.has(vertex) {
-                energies.losses.add_work(1.0, history, velocity(patch.vertex(vertex)), dt);
+                energies.losses.add_work(1.0, history, at_start(patch.vertex(vertex)), dt);
             }
             energies.losses.keep(1.0, history, &History::default());
         };

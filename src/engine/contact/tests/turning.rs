@@ -47,5 +47,8 @@ fn a_block_that_sticks_to_a_turntable_does_not_creep() {
             middle(sim)
         });
         assert!(from.distance(to) < 1e-4, "{block} {surface}: {from} {to}");
+        // Nothing slides: there is no heat of friction, of a kinetic energy of 35 mJ.
+        let [before, after] = [&first, &last].map(|sim| sim.ledger().total_named("friction"));
+        assert!((after - before).abs() < 1e-4, "{block} {surface}: {before} J {after} J");
     }
 }

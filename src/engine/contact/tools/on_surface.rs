@@ -251,8 +251,11 @@ impl OnSurface<'_> {
             tool.place(nearest.map_or(tool.reference(center), |nearest| nearest.point))
         };
         let place = nodes.place(i, center, arm, surface);
-        let velocity = motion.velocity(arm, place + (own_place - center)) - tool.velocity_at(place);
-        losses.add_work(1.0, history, velocity, self.dt);
+        let own = place + (own_place - center);
+        let velocity = motion.velocity(arm, own) - tool.velocity_at(place);
+        let lag = motion.lag(own, self.dt) - tool.lag_at(place, self.dt);
+        // With the arms of the beginning of the step, where that force acted.
+        losses.add_work(1.0, history, velocity + 2.0 * lag, self.dt);
     }
 
     /// The squared frequency of the impact that a rigid body may make at `speed` on another one or on
