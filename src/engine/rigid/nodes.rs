@@ -50,8 +50,8 @@ pub struct RigidNode {
     pub round: Round,
     /// Length that it represents, m.
     pub size: f64,
-    /// Outward normals of the flat faces that end at a point of an edge or a corner, zero where there are
-    /// fewer.
+    /// Outward normals of the flat faces that end at a point of an edge or a corner, or at a circle, zero
+    /// where there are fewer.
     pub ending: [DVec3; 4],
 }
 
@@ -81,6 +81,11 @@ impl RigidNode {
             Feature::Face(own) => own.dot(normal) < ACROSS,
             Feature::Corner | Feature::Edge(_) => true,
         }
+    }
+
+    /// Whether it is the circle at an end of a cylinder.
+    pub fn is_end(&self) -> bool {
+        matches!(self.round, Round::Rim(_)) && self.ending[0] != DVec3::ZERO
     }
 
     /// Whether it is a point of a face, neither of an edge nor of something round.
@@ -118,7 +123,18 @@ impl Nodes {
         if let Some(outline) = &outline {
             let (centers, rim) = outline.rims(spacing);
             let size = if centers.len() == 1 { 2.0 * rim.radius } else { spacing };
-            list.extend(centers.iter().map(|&center| node(center, Feature::Corner, Round::Rim(rim), size)));
+            list.extend(centers.iter().enumerate().map(|(k, &center)| {
+                let mut rim = node(center, Feature::Corner, Round::Rim(rim), size);
+                // The ends of a cylinder are flat.
+                rim.ending[0] = if k == 0 {
+                    (center - centers[centers.len() - 1]).normalize_or_zero()
+                } else if k + 1 == centers.len() {
+                    (center - centers[0]).normalize()
+                } else {
+                    DVec3::ZERO
+                };
+                rim
+            }));
         }
         let is_round = |x: DVec3| outline.is_some_and(|outline| outline.holds(x));
         let edges = surface.edges(spacing);

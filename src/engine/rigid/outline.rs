@@ -67,7 +67,7 @@ impl Outline {
             Self::Side { ends: [from, to], radius } => {
                 let parts = (from.distance(to) / spacing).round().max(1.0) as usize;
                 let at = |k: usize| from.lerp(to, k as f64 / parts as f64);
-                ((0..=parts).map(at).collect(), Rim { axis: (to - from).normalize(), radius })
+                ((0..=parts).map(at).collect(), Rim::new((to - from).normalize(), radius))
             }
         }
     }
@@ -82,6 +82,31 @@ pub struct Rim {
 }
 
 impl Rim {
+    /// A circle about that unit vector.
+    pub fn new(axis: DVec3, radius: f64) -> Self {
+        Self { axis, radius }
+    }
+
+    /// Whether it is a sphere.
+    pub fn is_ball(&self) -> bool {
+        self.axis == DVec3::ZERO
+    }
+
+    /// The same circle with its axis turned.
+    pub fn turned(self, turn: DQuat) -> Self {
+        Self { axis: turn * self.axis, ..self }
+    }
+
+    /// Two unit vectors in its plane, at right angles.
+    pub fn axes(&self) -> (DVec3, DVec3) {
+        self.axis.any_orthonormal_pair()
+    }
+
+    /// Unit vector along it at the end of an arm from the centre.
+    pub fn ahead(&self, arm: DVec3) -> DVec3 {
+        self.axis.cross(arm) / self.radius
+    }
+
     /// From the centre to the point that is deepest behind a plane of that outward normal; none where the rim
     /// lies flat on it.
     pub fn lowest(&self, normal: DVec3) -> Option<DVec3> {

@@ -1,6 +1,7 @@
 //! The bodies in contact in their current state: their motion bounds, particles with the ellipsoids into
 //! which they deform, points and surfaces.
 
+mod circle;
 mod crossing;
 
 mod error;

@@ -2,10 +2,11 @@
 
 use glam::DVec3;
 
+use super::circle::CircleBeside;
 use super::crossing::Crossing;
 use super::members::Members;
 use super::shape::{ParticleShape, Proximity, on_surface};
-use crate::rigid::{Feature, RigidBody, Round};
+use crate::rigid::{Feature, RigidBody, Rim, Round};
 use crate::shapes::SurfacePoint;
 use crate::solids::LocalMotion;
 
@@ -52,8 +53,8 @@ impl NodeView<'_> {
         }
     }
 
-    /// Normals of the faces that end at a point of an edge or a corner of a rigid body, zero where there are
-    /// fewer.
+    /// Normals of the faces that end at a point of an edge or a corner of a rigid body, or at a circle, zero
+    /// where there are fewer.
     pub fn ending(&self, i: usize) -> [DVec3; 4] {
         match self {
             Self::Particles(_) => [DVec3::ZERO; 4],
@@ -131,12 +132,17 @@ impl NodeView<'_> {
         on_surface(distance, normal, shape)
     }
 
-    /// The nearest point of the surface of a tool to a node with its centre at `x`, m. For a rim the distance
-    /// is that of its lowest point, and the surface the plane that is tangential to it at the point nearest
-    /// to the centre. None where a rim lies flat, and where an edge crosses none of the tool.
+    /// The nearest point of the surface of a tool to a node with its centre at `x`, m. For a circle it is
+    /// that to its deepest point, and for a ball to its lowest one over the plane that is tangential to the
+    /// surface at the point nearest to the centre. None where a circle lies flat or is deepest below a
+    /// ridge, and where an edge crosses none of the tool.
     pub fn nearest(&self, i: usize, x: DVec3, tool: &RigidBody) -> Option<SurfacePoint> {
         if let Some(crossing) = self.crossing(i, x, tool) {
             return Some(crossing?.at);
+        }
+        if let Some(rim) = self.circle(i, tool) {
+            let (surface, center, size) = (&*tool.surface, tool.reference(x), self.size(i));
+            return CircleBeside { surface, center, rim, size }.deepest();
         }
         let nearest = tool.surface.closest(tool.reference(x));
         let Some(arm) = self.lowest(i, nearest.normal, tool) else { return Some(nearest) };
@@ -157,9 +163,23 @@ impl NodeView<'_> {
         Some(Crossing::of(&*tool.surface, [middle - half, middle + half], self.size(i)))
     }
 
+    /// A circle of a cylinder, in the reference configuration of the tool, if the node is one.
+    pub fn circle(&self, i: usize, tool: &RigidBody) -> Option<Rim> {
+        let Self::Rigid(body) = self else { return None };
+        match body.nodes.list()[i].round {
+            Round::Rim(rim) if !rim.is_ball() => {
+                Some(rim.turned(tool.state.rotation.inverse() * body.state.rotation))
+            }
+            _ => None,
+        }
+    }
+
     /// Whether the lowest point of a rim is inside of the tool; a tool in the hole of a ring is near its
     /// centre, and does not touch its rim.
     pub fn reaches(&self, i: usize, x: DVec3, normal: DVec3, tool: &RigidBody) -> bool {
+        if self.circle(i, tool).is_some() {
+            return true;
+        }
         let Some(Some(arm)) = self.lowest(i, normal, tool) else { return true };
         tool.surface.closest(tool.reference(x) + arm).signed_distance < 0.0
     }
@@ -175,7 +195,8 @@ impl NodeView<'_> {
 
     /// Whether contact at a point of a tool is left to the nodes of the tool, because its round outline has
     /// circles as nodes. The circles of a ball lie in every plane, and take precedence over the rims of a
-    /// cylinder; of two equal ones the first contact keeps it.
+    /// cylinder; of two equal ones the first contact keeps it, and the second one those at the ends of
+    /// cylinders, which may meet the side of the other one anywhere.
     pub fn leaves_to(&self, i: usize, tool: &RigidBody, point: DVec3, turn: NodeTurn) -> bool {
         let Self::Rigid(body) = self else { return false };
         if turn == NodeTurn::Alone || !tool.nodes.is_round(point) {
@@ -183,7 +204,9 @@ impl NodeView<'_> {
         }
         let node = &body.nodes.list()[i];
         match node.round {
-            Round::Rim(_) if body.nodes.is_ball() == tool.nodes.is_ball() => turn == NodeTurn::Second,
+            Round::Rim(_) if body.nodes.is_ball() == tool.nodes.is_ball() => {
+                turn == NodeTurn::Second && !node.is_end()
+            }
             Round::Rim(_) => tool.nodes.is_ball(),
             // The corner of a body may come between two rims.
             Round::Ball(_) | Round::Point | Round::Edge(_) => node.is_of_face() || tool.nodes.is_ball(),

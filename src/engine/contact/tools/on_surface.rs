@@ -108,6 +108,10 @@ impl OnSurface<'_> {
         touches.then(|| {
             let share = match (&crossing, nodes.feature(i)) {
                 (Some(crossing), _) => Share::of_crossing(crossing, tool),
+                (None, Feature::Corner) if nodes.circle(i, tool).is_some() => {
+                    let beside = Share::beside_ridge(&nearest, nodes.size(i), tool);
+                    beside.beside_faces(nodes.ending(i), normal)
+                }
                 (None, Feature::Corner) => Share::WHOLE.beside_faces(nodes.ending(i), normal),
                 (None, Feature::Face(_)) => Share::on_face(&nearest, nodes.size(i), tool),
                 (None, Feature::Edge(e)) => {

@@ -63,24 +63,29 @@ impl Share {
         Self { share, gradient, turning: DVec3::ZERO }
     }
 
-    /// For a point of an edge along a unit vector that represents a length, m, and is nearest to that point
-    /// of the surface of `tool`, all in the reference configuration of that. An edge that stands on the face
-    /// is in contact at its ends and crossings. The weight is zero where another face is as near: the point
-    /// may be below the ridge between them.
-    pub fn on_edge(edge: DVec3, nearest: &SurfacePoint, length: f64, tool: &RigidBody) -> Self {
+    /// For a point that represents a length, m, and is nearest to that point of the surface of `tool`, in the
+    /// reference configuration of that, such as the deepest one of a circle. The weight is zero where another
+    /// face is as near: the point may be below the ridge between them.
+    pub fn beside_ridge(nearest: &SurfacePoint, length: f64, tool: &RigidBody) -> Self {
         let SurfacePoint { point, normal, signed_distance } = *nearest;
         let depth = RAMP * length;
         let below = tool.surface.closest(point + (signed_distance - depth) * normal);
-        let inside = ((signed_distance - below.signed_distance) / depth).clamp(0.0, 1.0);
-        let gradient = if inside < 1.0 { (normal - below.normal) / depth } else { DVec3::ZERO };
+        let share = ((signed_distance - below.signed_distance) / depth).clamp(0.0, 1.0);
+        let is_partial = share > 0.0 && share < 1.0;
+        let gradient = if is_partial { (normal - below.normal) / depth } else { DVec3::ZERO };
+        Self { share, gradient: tool.state.rotation * gradient, turning: DVec3::ZERO }
+    }
+
+    /// The same for a point of an edge along a unit vector in the reference configuration of `tool`. An edge
+    /// that stands on the face is in contact at its ends and crossings.
+    pub fn on_edge(edge: DVec3, nearest: &SurfacePoint, length: f64, tool: &RigidBody) -> Self {
+        let normal = nearest.normal;
+        let Self { share, gradient, .. } = Self::beside_ridge(nearest, length, tool);
         let rising = if normal.dot(edge) < 0.0 { -edge } else { edge };
         let (standing, turning) = share_of_slope(rising, normal);
-        let (lying, rotation) = (1.0 - standing, tool.state.rotation);
-        Self {
-            share: lying * inside,
-            gradient: rotation * (lying * gradient),
-            turning: rotation * (-inside * turning),
-        }
+        let lying = 1.0 - standing;
+        let turning = tool.state.rotation * (-share * turning);
+        Self { share: lying * share, gradient: lying * gradient, turning }
     }
 
     /// The share of a point where faces of these outward normals end, on a surface of that normal.
