@@ -247,6 +247,30 @@ fn walls_that_pull_at_a_free_surface_are_warned_of() {
     assert!(!told(false));
 }
 
+/// Notches of a worn floor that the water has not filled are not a free surface: nobody should be told to leave
+/// out the suction of walls that bound a full channel.
+#[test]
+fn gaps_beside_a_rough_floor_are_no_free_surface() {
+    let notches: Vec<String> = (0..10)
+        .map(|k| 0.2 * f64::from(k))
+        .map(|x| format!("Box(min: ({x:.2}, -0.15), max: ({:.2}, 0.01))", x + 0.1))
+        .collect();
+    let mut sim = simulation(&format!(
+        r#"(dimension: Two, domain: (min: (0, -1), max: (2, 2), periodic: [X]),
+        materials: {{"water": Fluid(density: 1000.0, sound_speed: 40.0)}},
+        bodies: [
+            (name: "water", material: "water", spacing: 0.05, formulation: Fluid(pressure: 1.0e4), shape: Box(min: (0, 0), max: (2, 1))),
+            (name: "roof", material: "wall", spacing: 0.05, formulation: Wall(slip: Free, suction: true), shape: Box(min: (0, 1), max: (2, 1.2))),
+            (name: "floor", material: "wall", spacing: 0.05, formulation: Wall(slip: Free, suction: true),
+             shape: Difference(Box(min: (0, -0.4), max: (2, 0)), Union([{}]))),
+        ], time: (end: 1.0e-3))"#,
+        notches.join(", ")
+    ));
+    sim.run(|_| true).expect("a run");
+    let told: Vec<&String> = sim.warnings().iter().filter(|text| text.contains("leave `suction` out")).collect();
+    assert!(told.is_empty(), "{told:?}");
+}
+
 /// A chamber full of water beside an open tank: the roof raised its pressure by 10 and 7 % of that at the
 /// floor, 10 and 20 deep, without a word. With suction in its own walls it has nothing to be told, and the
 /// open water beside it is not that of a wall that pulls.

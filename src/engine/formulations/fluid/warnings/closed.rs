@@ -135,7 +135,8 @@ pub(super) fn named(cloud: &FlowCloud, step: &Step<'_>) -> String {
     }
 }
 
-/// The fluid particles that are joined, by others, to walls or bodies with suction.
+/// The fluid particles that are joined, by others, to walls or bodies with suction, without those next to them:
+/// a gap between fluid and wall is not a free surface.
 fn beside_suction(cloud: &FlowCloud) -> Vec<bool> {
     let near = |i: usize| {
         let is_near = move |j: &usize| {
@@ -147,9 +148,10 @@ fn beside_suction(cloud: &FlowCloud) -> Vec<bool> {
     };
     let pulls = |j: usize| j >= cloud.fluid && cloud.group_of(j).has_suction();
     let flows = |i: &usize| cloud.records()[*i].volume() > 0.0;
-    let mut next: Vec<usize> = (0..cloud.fluid).filter(flows).filter(|&i| near(i).any(pulls)).collect();
+    let beside: Vec<usize> = (0..cloud.fluid).filter(flows).filter(|&i| near(i).any(pulls)).collect();
     let mut found = vec![false; cloud.fluid];
-    next.iter().for_each(|&i| found[i] = true);
+    beside.iter().for_each(|&i| found[i] = true);
+    let mut next = beside.clone();
     while let Some(i) = next.pop() {
         for j in near(i).filter(|&j| j < cloud.fluid) {
             if !std::mem::replace(&mut found[j], true) {
@@ -157,6 +159,7 @@ fn beside_suction(cloud: &FlowCloud) -> Vec<bool> {
             }
         }
     }
+    beside.iter().for_each(|&i| found[i] = false);
     found
 }
 
