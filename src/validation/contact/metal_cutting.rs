@@ -29,10 +29,13 @@ const FRICTION: f64 = 0.2;
 /// Interval over which forces are averaged, s: the chip has formed, and no crack has run through it at any of
 /// the resolutions.
 const PRESSED: [f64; 2] = [6.0e-6, 1.8e-5];
-/// Time from which the chip is measured, s: it is two depths of cut high.
-const CHIP_FROM: f64 = 4.0e-5;
-/// Heights above the free surface between which the chip is measured, in depths of cut.
-const CHIP: [f64; 2] = [0.25, 1.25];
+/// Heights above the free surface between which the chip is measured, in depths of cut: clear of its root, and
+/// reached before the first crack moves its parts away from each other.
+const CHIP: [f64; 2] = [0.25, 0.75];
+/// Time over which its thickness is averaged from when it has reached the upper height, s.
+const MEASURED: f64 = 1.0e-6;
+/// Duration at the resolution of the tests, and at others, s.
+const ENDS: [f64; 2] = [3.0e-5, 5.0e-5];
 
 /// `across` is the number of particles in the depth of cut.
 fn metal_cutting(registry: &Registry, across: usize) -> Result<Vec<Check>> {
@@ -42,6 +45,7 @@ fn metal_cutting(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         "tests/validation/metal_cutting/scene.ron",
         include_str!("../../../tests/validation/metal_cutting/scene.ron"),
     )
+    .set("time.end", ENDS[usize::from(across != CASE.ci_resolution)])?
     .set("bodies.workpiece.spacing", spacing)?
     .set("bodies.workpiece.shape.min", format!("(0, {})", -held))?
     .set("bodies.workpiece.shape.max", format!("({}, 4.0e-4)", 1.0e-3 + held))?
@@ -49,7 +53,7 @@ fn metal_cutting(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     let workpiece = body(&simulation, "workpiece")?;
     let (mut cutting, mut thrust, mut thickness) =
         (MeanOverSteps::default(), MeanOverSteps::default(), MeanOverSteps::default());
-    let mut strength = None;
+    let (mut strength, mut risen) = (None, None);
     let balance = run(&mut simulation, |simulation| {
         let time = simulation.clock().time;
         if (PRESSED[0]..PRESSED[1]).contains(&time) {
@@ -59,8 +63,11 @@ fn metal_cutting(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         } else if time >= PRESSED[1] && strength.is_none() {
             strength = Some(shear_strength(simulation, workpiece)?);
         }
-        if time > CHIP_FROM {
-            thickness.add(chip_thickness(simulation, workpiece)?);
+        if risen.is_none_or(|since| time < since + MEASURED)
+            && let Some(of_chip) = chip_thickness(simulation, workpiece)?
+        {
+            risen.get_or_insert(time);
+            thickness.add(of_chip);
         }
         Ok(())
     })?;
@@ -136,17 +143,17 @@ fn shear_strength(simulation: &Simulation, workpiece: BodyId) -> Result<f64> {
     Ok(flow / 3f64.sqrt())
 }
 
-/// Thickness of the chip, m: area of the material that was above the cut and is now between two heights
-/// beside the rake face, over their difference.
-fn chip_thickness(simulation: &Simulation, workpiece: BodyId) -> Result<f64> {
+/// Thickness of a chip that has reached the upper height, m: area of the material that was above the cut and is
+/// now between two heights beside the rake face, over their difference.
+fn chip_thickness(simulation: &Simulation, workpiece: BodyId) -> Result<Option<f64>> {
     let (view, rows) = simulation.world().body_view(workpiece);
     let (reference, position) = (view.read::<ReferencePosition>()?, view.read::<Position>()?);
     let (volume, removed) = (view.read::<ReferenceVolume>()?, view.read::<Removed>()?);
     let [low, high] = CHIP.map(|height| TOP + height * DEPTH);
-    let is_chip = |k: &usize| {
-        removed[*k] == Removed::NO && reference[*k].0.y > CUT && (low..high).contains(&position[*k].0.y)
-    };
-    Ok(rows.filter(is_chip).map(|k| volume[k].0).sum::<f64>() / (high - low))
+    let chip = || rows.clone().filter(|&k| removed[k] == Removed::NO && reference[k].0.y > CUT);
+    let area =
+        || chip().filter(|&k| (low..high).contains(&position[k].0.y)).map(|k| volume[k].0).sum::<f64>();
+    Ok(chip().any(|k| position[k].0.y >= high).then(|| area() / (high - low)))
 }
 
 /// Mean distance of failed particles from the cut, in the reference configuration of the workpiece, m.

@@ -225,34 +225,39 @@ impl Contacts {
         }
     }
 
-    /// Specific heat of a body that friction may warm, J/(kg K).
-    fn specific_heat(&self, body: BodyId) -> Option<f64> {
-        self.specific_heats.iter().find(|(id, _)| *id == body).map(|(_, specific_heat)| *specific_heat)
-    }
-
     /// Adds the forces on particles, and warms them.
     fn push(&self, step: &Step<'_>) -> Result<(), StepError> {
         for (body, contact_nodes) in self.acting().flat_map(Touching::contact_nodes) {
             let (view, rows) = step.world.body_view(body);
-            contact_nodes.add_forces(&mut view.write::<Force>()?[rows.clone()]);
-            if let Some(specific_heat) = self.specific_heat(body) {
-                let (mass, mut temperature) = (view.read::<Mass>()?, view.write::<Temperature>()?);
-                let solid = step.resources.solid(step.world.body(body).phase);
-                let capacity = HeatCapacity::of_body(specific_heat, &mass, rows.start, solid.as_deref());
-                contact_nodes.warm(&capacity, &mut temperature[rows]);
-            }
+            contact_nodes.add_forces(&mut view.write::<Force>()?[rows]);
+            self.warm(body, step, |capacity, temperature| contact_nodes.warm(capacity, temperature))?;
         }
         for patch in self.acting().flat_map(Touching::patches) {
             let body = patch.skin.body;
             let (view, rows) = step.world.body_view(body);
-            patch.add_forces(&mut view.write::<Force>()?[rows.clone()]);
-            if let Some(specific_heat) = self.specific_heat(body) {
-                let (mass, mut temperature) = (view.read::<Mass>()?, view.write::<Temperature>()?);
-                let solid = step.resources.solid(step.world.body(body).phase);
-                let capacity = HeatCapacity::of_body(specific_heat, &mass, rows.start, solid.as_deref());
-                patch.warm(&capacity, &mut temperature[rows]);
-            }
+            patch.add_forces(&mut view.write::<Force>()?[rows]);
+            self.warm(body, step, |capacity, temperature| patch.warm(capacity, temperature))?;
         }
+        Ok(())
+    }
+
+    /// Warms the particles of a body, if friction may warm it.
+    fn warm(
+        &self,
+        body: BodyId,
+        step: &Step<'_>,
+        by: impl FnOnce(&HeatCapacity<'_>, &mut [Temperature]),
+    ) -> Result<(), StepError> {
+        let Some(&(_, specific_heat)) = self.specific_heats.iter().find(|(id, _)| *id == body) else {
+            return Ok(());
+        };
+        let (view, rows) = step.world.body_view(body);
+        let (mass, mut temperature) = (view.read::<Mass>()?, view.write::<Temperature>()?);
+        let solid = step.resources.solid(step.world.body(body).phase);
+        by(
+            &HeatCapacity::of_body(specific_heat, &mass, rows.start, solid.as_deref()),
+            &mut temperature[rows],
+        );
         Ok(())
     }
 }

@@ -267,7 +267,8 @@ fn gaps_beside_a_rough_floor_are_no_free_surface() {
         notches.join(", ")
     ));
     sim.run(|_| true).expect("a run");
-    let told: Vec<&String> = sim.warnings().iter().filter(|text| text.contains("leave `suction` out")).collect();
+    let told: Vec<&String> =
+        sim.warnings().iter().filter(|text| text.contains("leave `suction` out")).collect();
     assert!(told.is_empty(), "{told:?}");
 }
 
