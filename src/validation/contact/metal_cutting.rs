@@ -29,8 +29,8 @@ const FRICTION: f64 = 0.2;
 /// Interval over which forces are averaged, s: the chip has formed, and no crack has run through it at any of
 /// the resolutions.
 const PRESSED: [f64; 2] = [6.0e-6, 1.8e-5];
-/// Heights above the free surface between which the chip is measured, in depths of cut: clear of its root, and
-/// reached before the first crack moves its parts away from each other.
+/// Heights above the free surface between which the chip is measured, in depths of cut: clear of its root,
+/// and reached before the first crack moves its parts away from each other.
 const CHIP: [f64; 2] = [0.25, 0.75];
 /// Time over which its thickness is averaged from when it has reached the upper height, s.
 const MEASURED: f64 = 1.0e-6;
@@ -143,8 +143,8 @@ fn shear_strength(simulation: &Simulation, workpiece: BodyId) -> Result<f64> {
     Ok(flow / 3f64.sqrt())
 }
 
-/// Thickness of a chip that has reached the upper height, m: area of the material that was above the cut and is
-/// now between two heights beside the rake face, over their difference.
+/// Thickness of a chip that has reached the upper height, m: area of the material that was above the cut and
+/// is now between two heights beside the rake face, over their difference.
 fn chip_thickness(simulation: &Simulation, workpiece: BodyId) -> Result<Option<f64>> {
     let (view, rows) = simulation.world().body_view(workpiece);
     let (reference, position) = (view.read::<ReferencePosition>()?, view.read::<Position>()?);

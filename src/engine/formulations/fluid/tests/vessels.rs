@@ -247,8 +247,8 @@ fn walls_that_pull_at_a_free_surface_are_warned_of() {
     assert!(!told(false));
 }
 
-/// Notches of a worn floor that the water has not filled are not a free surface: nobody should be told to leave
-/// out the suction of walls that bound a full channel.
+/// Notches of a worn floor that the water has not filled are not a free surface: nobody should be told to
+/// leave out the suction of walls that bound a full channel.
 #[test]
 fn gaps_beside_a_rough_floor_are_no_free_surface() {
     let notches: Vec<String> = (0..10)

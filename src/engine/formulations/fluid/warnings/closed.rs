@@ -135,8 +135,8 @@ pub(super) fn named(cloud: &FlowCloud, step: &Step<'_>) -> String {
     }
 }
 
-/// The fluid particles that are joined, by others, to walls or bodies with suction, without those next to them:
-/// a gap between fluid and wall is not a free surface.
+/// The fluid particles that are joined, by others, to walls or bodies with suction, without those next to
+/// them: a gap between fluid and wall is not a free surface.
 fn beside_suction(cloud: &FlowCloud) -> Vec<bool> {
     let near = |i: usize| {
         let is_near = move |j: &usize| {
