@@ -30,7 +30,7 @@ pub(super) struct CircleBeside<'a> {
     pub surface: &'a dyn Surface,
     pub center: DVec3,
     pub rim: Rim,
-    /// Length of what may meet the circle between two of its points, m.
+    /// Largest distance between two places at which the circle is looked at first, m.
     pub size: f64,
 }
 
@@ -77,7 +77,7 @@ impl CircleBeside<'_> {
         (found.signed_distance - of_plane).abs() < ON_PLANE * self.rim.radius
     }
 
-    /// The deepest one of places along the circle, and the way between two of them, 1.
+    /// The deepest one of places along the circle, and the angle between two of them, rad.
     fn first(&self) -> Option<(DVec3, f64)> {
         let Rim { radius, .. } = self.rim;
         let [least, most] = PLACES;
@@ -92,13 +92,13 @@ impl CircleBeside<'_> {
             if deepest.is_none_or(|(least, _)| distance < least) {
                 deepest = Some((distance, arm));
             }
-            // A distance changes by as much as the way at most.
+            // Along the circle the distance changes by no more than the length of the arc.
             k += 1 + ((distance - self.size) / (radius * step)).max(0.0) as usize;
         }
         deepest.map(|(_, arm)| (arm, step))
     }
 
-    /// The deepest point within a step, 1, of a place, if the surface is smooth there.
+    /// The deepest point within an angle, rad, of a place, if the surface is smooth there.
     fn between(&self, arm: DVec3, step: f64) -> Option<SurfacePoint> {
         let Rim { radius, .. } = self.rim;
         let across = self.rim.ahead(arm);
