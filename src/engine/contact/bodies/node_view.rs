@@ -146,7 +146,6 @@ impl NodeView<'_> {
         }
         let nearest = tool.surface.closest(tool.reference(x));
         let Some(arm) = self.lowest(i, nearest.normal, tool) else { return Some(nearest) };
-        let arm = arm?;
         let below = arm.dot(nearest.normal);
         let signed_distance = nearest.signed_distance + below;
         let point = tool.reference(x) + arm - nearest.normal * signed_distance;
@@ -174,23 +173,23 @@ impl NodeView<'_> {
         }
     }
 
-    /// Whether the lowest point of a rim is inside of the tool; a tool in the hole of a ring is near its
-    /// centre, and does not touch its rim.
+    /// Whether the lowest point of a ball is inside of the tool; a tool in the hole of a shell is near its
+    /// centre, and does not touch its outside.
     pub fn reaches(&self, i: usize, x: DVec3, normal: DVec3, tool: &RigidBody) -> bool {
-        if self.circle(i, tool).is_some() {
-            return true;
-        }
-        let Some(Some(arm)) = self.lowest(i, normal, tool) else { return true };
+        let Some(arm) = self.lowest(i, normal, tool) else { return true };
         tool.surface.closest(tool.reference(x) + arm).signed_distance < 0.0
     }
 
-    /// From the centre of a rim to its lowest point over a plane of that normal, both in the reference
-    /// configuration of the tool, if the node is a rim.
-    fn lowest(&self, i: usize, normal: DVec3, tool: &RigidBody) -> Option<Option<DVec3>> {
+    /// From the centre of a ball to its lowest point over a plane of that normal, both in the reference
+    /// configuration of the tool, if the node is one.
+    fn lowest(&self, i: usize, normal: DVec3, tool: &RigidBody) -> Option<DVec3> {
         let Self::Rigid(body) = self else { return None };
         let Round::Rim(rim) = body.nodes.list()[i].round else { return None };
+        if !rim.is_ball() {
+            return None;
+        }
         let turn = body.state.rotation.inverse() * tool.state.rotation;
-        Some(rim.lowest(turn * normal).map(|arm| turn.inverse() * arm))
+        rim.lowest(turn * normal).map(|arm| turn.inverse() * arm)
     }
 
     /// Whether contact at a point of a tool is left to the nodes of the tool, because its round outline has
