@@ -3,10 +3,16 @@
 use meshless::standard_plugins;
 use meshless_validation::CASES;
 
+/// The test runner does several cases at once, so that each has one thread: the same bits, and no waiting
+/// between threads.
+fn alone<T: Send>(run: impl FnOnce() -> T + Send) -> T {
+    rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool of one thread").install(run)
+}
+
 fn passes(id: &str) {
     let case = CASES.iter().find(|case| case.id == id).expect("a known case");
-    let checks =
-        (case.run)(&standard_plugins(), case.ci_resolution).unwrap_or_else(|error| panic!("{id}: {error:#}"));
+    let checks = alone(|| (case.run)(&standard_plugins(), case.ci_resolution))
+        .unwrap_or_else(|error| panic!("{id}: {error:#}"));
     assert!(!checks.is_empty());
     let failed: Vec<_> = checks.iter().filter(|check| !check.passes()).collect();
     assert!(failed.is_empty(), "{id}: {failed:#?}");

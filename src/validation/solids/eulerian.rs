@@ -57,7 +57,6 @@ pub(crate) const UPSETTING: Case = Case {
 pub(crate) const FLAG: Case = Case {
     id: "S9E",
     title: "Turek-Hron CSM1, CSM2, CSM3, Eulerian",
-    ci_resolution: 7,
     run: |registry, n| (turek_hron::CASE.run)(&eulerian(registry), n),
     ..turek_hron::CASE
 };
