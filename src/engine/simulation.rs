@@ -358,7 +358,7 @@ impl Simulation {
     }
 
     fn run_short_stages(&mut self, wanted: impl Fn(Stage) -> bool) -> Result<(), StepError> {
-        let SubSteps { phases, state, divided, .. } = &mut self.sub_steps;
+        let SubSteps { phases, state, long, .. } = &mut self.sub_steps;
         let mut step = Step {
             world: &self.world,
             resources: &self.resources,
@@ -366,7 +366,7 @@ impl Simulation {
             ledger: &mut self.ledger,
             limits: &mut state.limits,
             warnings: &mut self.warnings,
-            part: StepPart::short(phases, *divided, state.total),
+            part: StepPart::short(phases, *long, state.total),
             stop: &mut self.stop,
         };
         self.schedule.run(&mut step, wanted)

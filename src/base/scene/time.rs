@@ -58,6 +58,16 @@ pub enum StepRule {
     Fixed(f64),
 }
 
+impl StepRule {
+    /// Factor on stability limits; 1 where the step is constant.
+    pub fn factor(&self) -> f64 {
+        match *self {
+            Self::Adaptive { factor } => factor,
+            Self::Fixed(_) => 1.0,
+        }
+    }
+}
+
 impl Default for StepRule {
     fn default() -> Self {
         Self::Adaptive { factor: one() }

@@ -18,7 +18,7 @@ pub enum Cadence {
 #[derive(Clone, Copy, Debug)]
 pub struct StepPart<'s> {
     short: bool,
-    part: bool,
+    long: Option<f64>,
     number: u64,
     sub_cycled: &'s [PhaseId],
 }
@@ -26,12 +26,13 @@ pub struct StepPart<'s> {
 impl<'s> StepPart<'s> {
     /// The long step of this number; without sub-cycled phases, the whole of the step.
     pub fn long(sub_cycled: &'s [PhaseId], number: u64) -> Self {
-        Self { short: false, part: false, number, sub_cycled }
+        Self { short: false, long: None, number, sub_cycled }
     }
 
-    /// The sub-step of this number since time 0; `part` where there are others in the long step.
-    pub fn short(sub_cycled: &'s [PhaseId], part: bool, number: u64) -> Self {
-        Self { short: true, part, number, sub_cycled }
+    /// The sub-step of this number since time 0; `long` is the length of the long step, s, where there are
+    /// others in it.
+    pub fn short(sub_cycled: &'s [PhaseId], long: Option<f64>, number: u64) -> Self {
+        Self { short: true, long, number, sub_cycled }
     }
 
     /// Number of steps done before this one by the clock of this part of the step: sub-steps by that of
@@ -40,9 +41,9 @@ impl<'s> StepPart<'s> {
         self.number
     }
 
-    /// Whether this is one of several sub-steps in a long one.
-    pub fn is_sub_step(self) -> bool {
-        self.part
+    /// Length of the long step of which this is one of several sub-steps, s.
+    pub fn long_step(self) -> Option<f64> {
+        self.long
     }
 
     /// Whether the body moves in this part of the step.

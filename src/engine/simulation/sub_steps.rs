@@ -19,8 +19,8 @@ pub(super) struct SubSteps {
     largest: u32,
     /// Factor on the limits of sub-steps.
     factor: f64,
-    /// Whether the long step takes more than one.
-    pub divided: bool,
+    /// Length of the long step, s, where it takes more than one.
+    pub long: Option<f64>,
     /// State in a checkpoint.
     pub state: SubStepState,
 }
@@ -38,17 +38,8 @@ pub(super) struct SubStepState {
 
 impl SubSteps {
     pub fn new(phases: Vec<PhaseId>, time: &scene::Time) -> Self {
-        let factor = match time.step {
-            scene::StepRule::Adaptive { factor } => factor,
-            scene::StepRule::Fixed(_) => 1.0,
-        };
-        Self {
-            phases,
-            largest: time.sub_steps.max(1),
-            factor,
-            divided: false,
-            state: SubStepState::default(),
-        }
+        let factor = time.step.factor();
+        Self { phases, largest: time.sub_steps.max(1), factor, long: None, state: SubStepState::default() }
     }
 
     /// Largest length of the next long step that needs no more short ones than there may be, s, and what
@@ -103,7 +94,8 @@ impl Simulation {
                 return Err(RunError::StepTooSmall { dt, by });
             }
             let dt = rest / count;
-            self.sub_steps.divided = count > 1.0 || self.sub_steps.state.last > 0;
+            let is_divided = count > 1.0 || self.sub_steps.state.last > 0;
+            self.sub_steps.long = is_divided.then_some(long.dt);
             self.clock = Clock { time: long.time + (long.dt - rest), dt, step: long.step };
             self.run_short_stages(|stage| stage != Stage::Record)?;
             self.sub_steps.take_limit();

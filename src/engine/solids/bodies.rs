@@ -12,7 +12,7 @@ use super::folded::{FoldedEnergy, FoldedRows, FoldedTerm, FoldedTermOfBodies};
 use super::hessian::{self, HessianDifference, HessianForm, HessianResidual, HessianStiffness};
 use super::pair_control::{self, PairControl};
 use super::refit::Refits;
-use super::stable_step::StepEstimate;
+use super::stable_step::{BodyStep, StepEstimate};
 use super::stretches::{self, Resisting};
 use crate::materials::{MAX_STATE, SolidLaw, StateColumns, StateRows, Stretches};
 use crate::parallel::{Split, for_each_block, for_each_own_block};
@@ -39,14 +39,11 @@ pub struct SolidBody {
     pub hessian: Option<HessianDifference>,
     /// Its control along pairs.
     pub control: Option<PairControl>,
-    /// Share of the damping of its sub-steps, if they are damped.
-    damping: Option<f64>,
-    /// Factor of the stable step by the stretches of the body.
-    stretch_factor: f64,
+    /// The damping of its sub-steps, if they are damped.
+    damping: Option<DampedSubSteps>,
+    /// Its stable step.
+    step: BodyStep,
 }
-
-/// Steps between two evaluations of the stretches: they change slowly against the stable step.
-const STRETCH_INTERVAL: u64 = 10;
 
 /// All bodies of a solid formulation, in the order of the scene.
 pub struct SolidBodies {
@@ -66,19 +63,19 @@ pub struct SolidBodies {
 pub struct SolidPart<'a> {
     /// Length of the step, s; zero before the first, and where a pass is repeated: states of laws then stay.
     pub dt: f64,
-    /// Whether the step is one of several short ones in a long one.
-    pub is_short: bool,
+    /// Length of the long step of which the step is one of several short ones, s.
+    pub long: Option<f64>,
     /// Measures of deformation that outlast cuts in the neighbourhood, for formulations that cut.
     pub refits: Option<&'a Refits>,
 }
 
 impl SolidPart<'_> {
     /// A pass that is repeated: states of laws stay.
-    pub const REPEATED: Self = Self { dt: 0.0, is_short: false, refits: None };
+    pub const REPEATED: Self = Self { dt: 0.0, long: None, refits: None };
 
     /// That of a step.
     pub fn of(step: &Step<'_>) -> Self {
-        Self { dt: step.clock.dt, is_short: step.part.is_sub_step(), refits: None }
+        Self { dt: step.clock.dt, long: step.part.long_step(), refits: None }
     }
 }
 
@@ -125,8 +122,7 @@ impl SolidBodies {
             sim.add_column_to::<DampedStrain>(bodies);
             sim.add_column_to::<DampingStress>(bodies);
         });
-        let damping =
-            |id| damped.iter().find(|damped| damped.bodies.contains(id)).map(|damped| damped.value.share);
+        let damping = |id| damped.iter().find(|own| own.bodies.contains(id)).map(|own| *own.value);
         let body = |&id: &BodyId| {
             let own = control.iter().filter(|own| own.bodies.contains(id)).map(|own| *own.value);
             let sum =
@@ -246,9 +242,9 @@ impl SolidBodies {
         for (slot, &k) in terms.iter_mut().zip(&body.terms) {
             *slot = &*all[k].term;
         }
-        let SolidPart { dt, is_short, refits } = part;
+        let SolidPart { dt, long, refits } = part;
         let terms = &terms[..body.terms.len()];
-        let damping = body.damping.filter(|_| is_short).unwrap_or(0.0);
+        let damping = damping::share_in(dt, long.zip(body.damping), body.step.stable);
         let constitutive = Constitutive { law: &*body.law, terms, refits, dt, damping };
         let (mut own, first_row) = (Some(own), rows.start);
         let is_divided = columns.is_divided;
@@ -351,35 +347,37 @@ impl SolidBodies {
         let damage = view.read_own::<Damage>().ok();
         for (k, (own, stable_step)) in self.bodies.iter_mut().zip(stable).enumerate() {
             let body = step.world.body(own.id);
-            if step.part.number().is_multiple_of(STRETCH_INTERVAL) {
+            let damped = step.part.long_step().zip(own.damping);
+            if own.step.is_stale(step.part.number(), damped.is_some()) {
                 let resisting = Resisting::of_rows(body.rows.clone(), damage.as_deref(), shares);
-                own.stretch_factor = factor(k, &*own.law, &gradient[body.rows.clone()], resisting);
+                own.step.stretch(factor(k, &*own.law, &gradient[body.rows.clone()], resisting));
             }
-            let by = fmt::from_fn(|f| own.write_cause(f, &body.name));
-            step.limits.propose(stable_step * own.stretch_factor, by);
+            own.step.stable = stable_step * own.step.stretch_factor;
+            let limit = damping::stable_step(damped, own.step.stable);
+            step.limits.propose(limit, fmt::from_fn(|f| own.write_cause(f, &body.name)));
         }
         Ok(())
     }
 
     /// State of the bodies in a checkpoint: for [`Run::save`](crate::schedule::Run::save).
     pub fn save(&self) -> Vec<u8> {
-        postcard::to_stdvec(&self.stretch_factors()).unwrap_or_default()
+        postcard::to_stdvec(&self.steps()).unwrap_or_default()
     }
 
     /// Restores the state of [`SolidBodies::save`]. Returns `false` where it does not fit.
     pub fn restore(&mut self, state: &[u8]) -> bool {
-        postcard::from_bytes::<Vec<f64>>(state).is_ok_and(|factors| self.restore_stretch_factors(&factors))
+        postcard::from_bytes::<Vec<BodyStep>>(state).is_ok_and(|steps| self.restore_steps(&steps))
     }
 
-    /// The factors of the stable step by the stretches of each body, for those that keep more than these.
-    pub fn stretch_factors(&self) -> Vec<f64> {
-        self.bodies.iter().map(|body| body.stretch_factor).collect()
+    /// The stable step of each body, for those that keep more than these.
+    pub fn steps(&self) -> Vec<BodyStep> {
+        self.bodies.iter().map(|body| body.step).collect()
     }
 
-    /// Restores the factors of [`SolidBodies::stretch_factors`]. Returns `false` where they do not fit.
-    pub fn restore_stretch_factors(&mut self, factors: &[f64]) -> bool {
-        self.bodies.iter_mut().zip(factors).for_each(|(body, factor)| body.stretch_factor = *factor);
-        factors.len() == self.bodies.len()
+    /// Restores those of [`SolidBodies::steps`]. Returns `false` where they do not fit.
+    pub fn restore_steps(&mut self, steps: &[BodyStep]) -> bool {
+        self.bodies.iter_mut().zip(steps).for_each(|(body, step)| body.step = *step);
+        steps.len() == self.bodies.len()
     }
 }
 
@@ -394,7 +392,7 @@ impl SolidBody {
         sim: &SimBuilder<'_>,
         all: &[ForBodies<FoldedTermOfBodies>],
         hessian: &[ForBodies<HessianDifference>],
-        damping: Option<f64>,
+        damping: Option<DampedSubSteps>,
     ) -> Result<Self, SetupError> {
         let body = sim.body(id);
         let terms: Vec<usize> = (0..all.len()).filter(|&k| all[k].bodies.contains(id)).collect();
@@ -428,11 +426,11 @@ impl SolidBody {
         let mut columns = ColumnSet::default();
         law.state(&mut columns);
         let state = StateColumns::new(&columns).ok_or_else(|| {
-            let message =
-                format!("the material of body `{}` has more than {MAX_STATE} state columns", body.name);
+            let message = format!("the material of `{}` has more than {MAX_STATE} state columns", body.name);
             SetupError::parameter("", message, "this is a fault of the material, not of the scene")
         })?;
-        Ok(Self { id, law, state, estimate, terms, hessian, control: None, damping, stretch_factor: 1.0 })
+        let step = BodyStep::default();
+        Ok(Self { id, law, state, estimate, terms, hessian, control: None, damping, step })
     }
 
     /// Whether it has folded terms.
@@ -491,8 +489,8 @@ impl SolidBody {
 
     fn write_cause(&self, f: &mut fmt::Formatter<'_>, body: &str) -> fmt::Result {
         let cause = if self.estimate.bond_limited() { "bond stiffness" } else { "wave speed" };
-        if self.stretch_factor < 0.99 {
-            write!(f, "{cause} of `{body}` at a stretch factor of {:.2}", self.stretch_factor)
+        if self.step.stretch_factor < 0.99 {
+            write!(f, "{cause} of `{body}` at a stretch factor of {:.2}", self.step.stretch_factor)
         } else {
             write!(f, "{cause} of `{body}`")
         }

@@ -13,6 +13,8 @@
 //! symmetric in S, so that angular momentum is conserved. A mode of the period T loses the share `c 4 pi^2
 //! dt_short / T` of its energy per period.
 
+use std::f64::consts::PI;
+
 use glam::DMat3;
 
 use crate::linalg::Sym3;
@@ -32,9 +34,80 @@ crate::column! {
 pub(super) const ACCOUNT: &str = "coupling_damping";
 
 /// Handed to solids whose sub-steps are damped, by what sub-cycles them.
+#[derive(Clone, Copy)]
 pub(crate) struct DampedSubSteps {
-    /// c.
+    /// c in the sub-steps that the body takes where it is the stiffest one.
     pub share: f64,
+    /// Largest c for which they need not be shorter.
+    pub room: f64,
+    /// Whether contacts may use up what shorter sub-steps leave of their limit.
+    pub touches: bool,
+    /// Length of these over the stable step.
+    pub factor: f64,
+    /// Least time of the damping.
+    pub least: LeastTime,
+    /// Largest c by that time: in a body that is crushed the stable step falls far below its first one.
+    pub most: f64,
+}
+
+/// Least time of the damping that the motions of a stiff body need beside a fluid: those of a frequency omega
+/// that the long step dt does not resolve take energy from a frozen force that acts on the mass m with the
+/// stiffness `kappa m`, and none with a damping of the time `kappa / omega^3` or so.
+#[derive(Clone, Copy)]
+pub(crate) struct LeastTime {
+    /// That time over the square of dt where a motion has half a period in dt, 1/s: `kappa dt` is a constant.
+    pub rate: f64,
+    /// Lowest frequency of the body, rad/s.
+    pub lowest: f64,
+}
+
+impl LeastTime {
+    /// In a long step, s.
+    pub fn of(self, long: f64) -> f64 {
+        self.rate * long * long * (PI / (self.lowest * long)).min(1.0).powi(3)
+    }
+
+    /// Longest step with a time of no more than `time`, s.
+    pub fn longest_step(self, time: f64) -> f64 {
+        match self.of(PI / self.lowest) <= time {
+            true => f64::INFINITY,
+            false => (time / self.rate).sqrt(),
+        }
+    }
+}
+
+impl DampedSubSteps {
+    /// Time of the damping, s, and length of the sub-steps that the body alone would take in a long step, s,
+    /// where its stable step is `stable`, s.
+    ///
+    /// What a mode needs is a time, which does not depend on other bodies: where these take shorter
+    /// sub-steps, each of which changes the strain by less, c is larger. Such a step has room for it:
+    /// (omega dt)^2 falls faster than c grows.
+    fn time(self, long: f64, stable: f64) -> (f64, f64) {
+        let own = long / (long / (self.factor * stable) - 1e-9).ceil().max(1.0);
+        let least = self.least.of(long).min(self.most * own);
+        (f64::max(self.share * own, least), own)
+    }
+}
+
+/// c of a body in a sub-step of length dt, s, whose own stable step is `stable`, s; zero without a long step.
+pub(super) fn share_in(dt: f64, damped: Option<(f64, DampedSubSteps)>, stable: f64) -> f64 {
+    damped.map_or(0.0, |(long, damped)| {
+        let (time, own) = damped.time(long, stable);
+        time / own.min(dt)
+    })
+}
+
+/// Stable step of the body with that damping, s. The leapfrog is stable while `a x^2 (1 + 2 c / x)` is no
+/// more than 4, with a the square of the phase of the fastest mode in a stable step, c the time of the
+/// damping over that step and x the share of it that is taken; contacts take what the square leaves.
+pub(super) fn stable_step(damped: Option<(f64, DampedSubSteps)>, stable: f64) -> f64 {
+    damped.map_or(stable, |(long, damped)| {
+        let (time, own) = damped.time(long, stable);
+        let (c, room) = (time / own, damped.room);
+        let share = if damped.touches { room / c } else { (c * c + 1.0 + 2.0 * room).sqrt() - c };
+        stable * share.min(1.0)
+    })
 }
 
 /// The columns of a body, empty where it is not damped.
@@ -89,6 +162,70 @@ impl Damping<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn least(rate: f64) -> LeastTime {
+        LeastTime { rate, lowest: 0.1 }
+    }
+
+    #[test]
+    fn compact_bodies_need_no_time_in_long_steps() {
+        let least = LeastTime { rate: 0.1, lowest: PI };
+        // Half a period of the lowest motion is a second.
+        assert!((least.of(0.5) / 0.025 - 1.0).abs() < 1e-12);
+        assert!((least.of(1.0) / 0.1 - 1.0).abs() < 1e-12);
+        assert!((least.of(10.0) / 0.01 - 1.0).abs() < 1e-12);
+        assert_eq!(least.longest_step(0.11), f64::INFINITY);
+        assert!((least.longest_step(0.025) / 0.5 - 1.0).abs() < 1e-12);
+        // A body without stiffness.
+        assert_eq!(LeastTime { rate: 0.1, lowest: 0.0 }.of(2.0), 0.4);
+    }
+
+    #[test]
+    fn the_time_of_the_damping_does_not_depend_on_how_many_sub_steps_others_take() {
+        let own = DampedSubSteps {
+            share: SHARE,
+            room: 0.5,
+            touches: false,
+            factor: 1.0,
+            least: least(0.0),
+            most: 2.0,
+        };
+        // Two and a half stable steps are three of its own.
+        for (dt, expected) in [(10.0 / 3.0, SHARE), (0.1, SHARE * 100.0 / 3.0), (5.0, SHARE)] {
+            let share = share_in(dt, Some((10.0, own)), 4.0);
+            assert!((share / expected - 1.0).abs() < 1e-12, "{share} in sub-steps of {dt} s");
+        }
+        // A soft body, whose stable step is longer than the long one, is damped for a share of that.
+        assert!((share_in(1.0, Some((10.0, own)), 400.0) / (10.0 * SHARE) - 1.0).abs() < 1e-12);
+        // Half the factor, half the time.
+        let short = DampedSubSteps { factor: 0.5, ..own };
+        assert!((share_in(0.1, Some((10.0, short)), 4.0) / (20.0 * SHARE) - 1.0).abs() < 1e-12);
+        assert_eq!(share_in(0.1, None, 4.0), 0.0, "one step for all is not damped");
+    }
+
+    #[test]
+    fn the_time_of_the_damping_is_no_less_than_the_long_step_demands() {
+        let own = DampedSubSteps {
+            share: SHARE,
+            room: 0.5,
+            touches: true,
+            factor: 1.0,
+            least: least(0.1),
+            most: 2.0,
+        };
+        // 2.5 s in steps of 2 s.
+        assert!((share_in(2.0, Some((5.0, own)), 2.5) / (2.5 / 2.0) - 1.0).abs() < 1e-12);
+        // Twice the largest share of 0.5 in a step of 2.5 s.
+        let stable = stable_step(Some((5.0, own)), 2.5);
+        assert!((stable / 1.25 - 1.0).abs() < 1e-12, "{stable}");
+        let free = stable_step(Some((5.0, DampedSubSteps { touches: false, ..own })), 2.5) / 2.5;
+        assert!((free * (free + 2.0) / 2.0 - 1.0).abs() < 1e-12, "{free}");
+        assert_eq!(stable_step(Some((0.5, own)), 2.5), 2.5, "a soft body");
+        // 0.1 s, and twice the stable step.
+        let crushed = share_in(0.01, Some((1.0, own)), 0.01);
+        assert!((crushed / 2.0 - 1.0).abs() < 1e-6, "{crushed}");
+        assert_eq!(stable_step(None, 2.5), 2.5, "one step for all");
+    }
 
     const DT: f64 = 1e-6;
     const SHARE: f64 = 0.1;

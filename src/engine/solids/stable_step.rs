@@ -8,6 +8,8 @@
 //! with supports of 2 to 3 spacings; tests/stable_step.rs of the hourglass plugin compares with the largest
 //! frequency of a naive second implementation.
 
+use serde::{Deserialize, Serialize};
+
 /// Stress: omega^2 = `STRESS_FACTOR` c_l^2 b_i.
 const STRESS_FACTOR: f64 = 1.45;
 /// Bond stiffness: omega^2 = `BOND_FACTOR` s E / rho sum_j V_j w_ij.
@@ -18,6 +20,41 @@ const PAIR_FACTOR: f64 = 1.0;
 const HESSIAN_FACTOR: f64 = 3.0;
 /// Share of the estimated critical step that is used.
 const SAFETY: f64 = 0.65;
+
+/// Steps between two evaluations of the stretches.
+const STRETCH_INTERVAL: u64 = 10;
+
+/// The stable step of a body.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct BodyStep {
+    /// Factor by the stretches of the body.
+    pub stretch_factor: f64,
+    /// Whether that factor had changed by more than a hundredth when it was last evaluated.
+    changes: bool,
+    /// The step with that factor, s.
+    pub stable: f64,
+}
+
+impl BodyStep {
+    /// Whether the factor is to be evaluated in the step of this number: stretches change slowly. Damping
+    /// leaves little room for a step that has become too long.
+    pub fn is_stale(&self, number: u64, is_damped: bool) -> bool {
+        number.is_multiple_of(STRETCH_INTERVAL) || is_damped && self.changes
+    }
+
+    /// Takes the factor of the present stretches.
+    pub fn stretch(&mut self, factor: f64) {
+        self.changes = (factor - self.stretch_factor).abs() > 0.01 * self.stretch_factor;
+        self.stretch_factor = factor;
+    }
+}
+
+impl Default for BodyStep {
+    /// That of a body without stretch, before the first step.
+    fn default() -> Self {
+        Self { stretch_factor: 1.0, changes: false, stable: f64::INFINITY }
+    }
+}
 
 /// Quantities that determine the stable step of a particle.
 #[derive(Clone, Copy, Debug)]

@@ -18,8 +18,8 @@ use crate::parallel::{Lanes4, Maximum, split_by_rows, sum_over_blocks};
 use crate::removal::REMOVED_ENERGY;
 use crate::schedule::{Access, AccountKind, Run, Step, StepError};
 use crate::solids::{
-    AppliedLosses, BodyPass, Constitutive, CorrectedStress, Loss, SolidBlock, SolidBodies, SolidColumns,
-    SolidPart, SolidRows, SolidSum, count_rows,
+    AppliedLosses, BodyPass, BodyStep, Constitutive, CorrectedStress, Loss, SolidBlock, SolidBodies,
+    SolidColumns, SolidPart, SolidRows, SolidSum, count_rows,
 };
 use crate::world::{
     Force, Mass, MissingColumn, PhaseId, PhaseView, Position, ReferenceVolume, Removed, Velocity, World,
@@ -63,16 +63,16 @@ impl Run for Stress {
     }
 
     fn save(&self) -> Vec<u8> {
-        postcard::to_stdvec(&(self.solids.stretch_factors(), &self.dilatation)).unwrap_or_default()
+        postcard::to_stdvec(&(self.solids.steps(), &self.dilatation)).unwrap_or_default()
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        let Ok((factors, dilatation)) = postcard::from_bytes::<(Vec<f64>, Dilatation)>(state) else {
+        let Ok((steps, dilatation)) = postcard::from_bytes::<(Vec<BodyStep>, Dilatation)>(state) else {
             return false;
         };
         self.dilatation = dilatation;
         self.is_restored = true;
-        self.solids.restore_stretch_factors(&factors)
+        self.solids.restore_steps(&steps)
     }
 }
 

@@ -7,7 +7,7 @@ use crate::formulations::bonded::{AffineFrame, BondedSites, EdgeRows, FrameIndif
 use crate::parallel::share_picked;
 use crate::ranks;
 use crate::schedule::{Run, Step, StepError};
-use crate::solids::{AppliedLosses, BodyPass, Loss, Refits, SolidBodies, SolidColumns, SolidPart};
+use crate::solids::{AppliedLosses, BodyPass, BodyStep, Loss, Refits, SolidBodies, SolidColumns, SolidPart};
 use crate::world::{Damage, MissingColumn, PhaseId, Removed, SupportRadius, Velocity, World};
 
 /// The system.
@@ -134,18 +134,18 @@ impl Run for Deformation {
     }
 
     fn save(&self) -> Vec<u8> {
-        let factors = self.solids.stretch_factors();
+        let steps = self.solids.steps();
         let RemovedRows { refits, released, .. } = &self.removed;
-        postcard::to_stdvec(&(factors, refits.entries(), released)).unwrap_or_default()
+        postcard::to_stdvec(&(steps, refits.entries(), released)).unwrap_or_default()
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        type Saved = (Vec<f64>, Vec<(u32, glam::DMat3)>, Vec<u32>);
-        let Ok((factors, refits, released)) = postcard::from_bytes::<Saved>(state) else {
+        type Saved = (Vec<BodyStep>, Vec<(u32, glam::DMat3)>, Vec<u32>);
+        let Ok((steps, refits, released)) = postcard::from_bytes::<Saved>(state) else {
             return false;
         };
         (self.removed.refits, self.removed.released) = (Refits::restored(refits), released);
         self.is_restored = true;
-        self.solids.restore_stretch_factors(&factors)
+        self.solids.restore_steps(&steps)
     }
 }

@@ -19,7 +19,7 @@ use crate::notation::quantity;
 use crate::parallel::share_picked;
 use crate::schedule::{AccountKind, Run, Shared, Step, StepError};
 use crate::solids::{
-    AppliedLosses, BodyPass, HessianForm, Loss, SolidBodies, SolidColumns, SolidPart, StepEstimate,
+    AppliedLosses, BodyPass, BodyStep, HessianForm, Loss, SolidBodies, SolidColumns, SolidPart, StepEstimate,
     count_rows, fill_rows,
 };
 use crate::world::{
@@ -464,16 +464,16 @@ impl Run for UpdatedSolids {
     }
 
     fn save(&self) -> Vec<u8> {
-        postcard::to_stdvec(&(self.solids.stretch_factors(), &self.keeps)).unwrap_or_default()
+        postcard::to_stdvec(&(self.solids.steps(), &self.keeps)).unwrap_or_default()
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        let Ok((factors, keeps)) = postcard::from_bytes::<(Vec<f64>, Vec<bool>)>(state) else {
+        let Ok((steps, keeps)) = postcard::from_bytes::<(Vec<BodyStep>, Vec<bool>)>(state) else {
             return false;
         };
         self.keeps = keeps;
         self.is_stale = true;
-        self.solids.restore_stretch_factors(&factors)
+        self.solids.restore_steps(&steps)
     }
 }
 

@@ -120,7 +120,7 @@ type Rows<'a> = (&'a mut [Force], &'a [Velocity], DragRows<'a>);
 impl Run for Drag {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         // In one sub-step there is nothing to follow.
-        if !step.part.is_sub_step() {
+        if step.part.long_step().is_none() {
             return Ok(());
         }
         let half = 0.5 * step.clock.dt;

@@ -13,7 +13,7 @@ use super::drag;
 use super::drag::DragColumns;
 use super::exchange::{CouplingForce, CouplingFriction, CouplingPressure, Exchange};
 use super::light_body::WetSurface;
-use super::sub_cycled::share_of_long_step;
+use super::sub_cycled::{longest_step, share_of_long_step};
 use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud, FluidState, Group, PARTS, PLACES_BEFORE, Role};
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::formulations::fluid::lists::blocks::pack_states;
@@ -121,8 +121,8 @@ struct Coupling {
     phase: PhaseId,
     /// Whether friction follows the motion of the bodies in the sub-steps.
     follows: bool,
-    /// Stable step of the surface of each body, in units of h / sqrt(K / rho).
-    steps: Vec<(BodyId, f64)>,
+    /// Stable step of the surface of each body, in units of h / sqrt(K / rho), and its largest one, s.
+    steps: Vec<(BodyId, f64, f64)>,
     /// Surfaces of the rigid bodies.
     surfaces: Vec<WetSurface>,
     /// Force on the particles of a body, and its parts, N.
@@ -139,7 +139,7 @@ struct Coupling {
 
 impl Coupling {
     fn new(phase: PhaseId, follows: bool, bodies: &BodySet, sim: &SimBuilder<'_>) -> Self {
-        let step_of = |id| (id, SURFACE * share_of_long_step(id, sim));
+        let step_of = |id| (id, SURFACE * share_of_long_step(id, sim), longest_step(id, sim));
         Self {
             phase,
             follows,
@@ -255,8 +255,9 @@ impl Coupling {
         if cloud.soft_neighborhood(group).is_none() {
             return f64::INFINITY;
         }
-        let own = self.steps.iter().find(|(id, _)| *id == group.body).map_or(SURFACE, |(_, step)| *step);
-        own * h * (lightest / stiffest).sqrt()
+        let own = self.steps.iter().find(|(id, ..)| *id == group.body);
+        let (share, longest) = own.map_or((SURFACE, f64::INFINITY), |(_, share, longest)| (*share, *longest));
+        longest.min(share * h * (lightest / stiffest).sqrt())
     }
 }
 

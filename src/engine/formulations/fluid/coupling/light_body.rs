@@ -15,7 +15,7 @@ use crate::world::BodyId;
 
 /// Stiffness of the fluid per area of a body with suction, over K / h; without it half of that, as the rate
 /// of compression then counts the body once.
-const STIFFNESS: f64 = 1.06;
+pub const STIFFNESS: f64 = 1.06;
 /// Largest step over that of the fastest motion, 1 / omega. The leapfrog is stable up to 2, less what the
 /// sound of the fluid itself takes: plates with suction, two and four particles thick, are stable at 1.67 and
 /// 1.89 and not at 1.77 and 2.04.
@@ -36,31 +36,42 @@ struct Piece {
     area: f64,
 }
 
+/// Area of the surface of a body, m2, in two dimensions per metre of thickness; none where its shape is not
+/// known.
+pub fn surface_area(id: BodyId, sim: &SimBuilder<'_>) -> Option<f64> {
+    pieces(id, sim).map(|pieces| pieces.iter().map(|piece| piece.area).sum())
+}
+
+/// The pieces of the surface of a body.
+fn pieces(id: BodyId, sim: &SimBuilder<'_>) -> Option<Vec<Piece>> {
+    let body = sim.body(id);
+    let region = sim.scene().bodies[id.0].shape.region(sim.dimension(), sim.folder(), "shape").ok()?;
+    let (axes, spacing) = (sim.dimension().count(), body.spacing);
+    let mut pieces = Vec::new();
+    for site in &body.sites {
+        let depth = -region.distance(site.position);
+        // The first row.
+        if !(0.0..spacing).contains(&depth) {
+            continue;
+        }
+        let normal = normal(|x| region.distance(x), site.position, 0.1 * spacing, axes);
+        let area = site.volume / spacing;
+        pieces.push(Piece { place: site.position + depth * normal, normal, area });
+        // A sheet of one row has a second face behind it.
+        if region.distance(site.position - 0.75 * spacing * normal) > 0.0 {
+            pieces.push(Piece { place: site.position - depth * normal, normal: -normal, area });
+        }
+    }
+    Some(pieces)
+}
+
 impl WetSurface {
     /// That of a rigid body; none of other bodies.
     pub fn new(id: BodyId, sim: &SimBuilder<'_>) -> Option<Self> {
-        let body = sim.body(id);
-        if body.kind != BodyKind::Rigid {
-            return None;
-        }
-        let region = sim.scene().bodies[id.0].shape.region(sim.dimension(), sim.folder(), "shape").ok()?;
-        let (axes, spacing) = (sim.dimension().count(), body.spacing);
-        let mut pieces = Vec::new();
-        for site in &body.sites {
-            let depth = -region.distance(site.position);
-            // The first row.
-            if !(0.0..spacing).contains(&depth) {
-                continue;
-            }
-            let normal = normal(|x| region.distance(x), site.position, 0.1 * spacing, axes);
-            let area = site.volume / spacing;
-            pieces.push(Piece { place: site.position + depth * normal, normal, area });
-            // A sheet of one row has a second face behind it.
-            if region.distance(site.position - 0.75 * spacing * normal) > 0.0 {
-                pieces.push(Piece { place: site.position - depth * normal, normal: -normal, area });
-            }
-        }
-        Some(Self { body: id, pieces })
+        (sim.body(id).kind == BodyKind::Rigid)
+            .then(|| pieces(id, sim))
+            .flatten()
+            .map(|pieces| Self { body: id, pieces })
     }
 
     /// Stable step of a flow of smoothing length `h`, m, and the largest bulk modulus `stiffest`, Pa, beside

@@ -1,14 +1,17 @@
 //! Damping of bodies that take sub-steps beside a fluid, against vibrations driven by its frozen force.
 
+use glam::DVec3;
+
+use super::light_body::{STIFFNESS, surface_area};
 use crate::formulations::fluid::walls::has_suction;
 use crate::materials::Law;
-use crate::plugin::{BodyKind, SimBuilder};
-use crate::scene::StepRule;
-use crate::solids::DampedSubSteps;
+use crate::plugin::{BodyKind, BodyPlan, SimBuilder};
+use crate::solids::{DampedSubSteps, LeastTime};
 use crate::world::{BodyId, BodySet};
 
-/// Share of the damping of bodies with the spacing of the fluid. A strip of rubber, four particles of the
-/// water beside it thick and two of its own to each, rings with 0.02 and is quiet with 0.05 in its sub-steps.
+/// Share of the damping of bodies with the spacing of the fluid, in the sub-steps that the body alone would
+/// take. A strip of rubber, four particles of the water beside it thick and two of its own to each, rings
+/// with 0.02 and is quiet with 0.05.
 ///
 /// Modes that swing to and fro in two steps of the fluid grow the fastest, by the stiffness of the fluid over
 /// the mass of the body, per mode. The damping acts in each sub-step by what has changed in it, so that a
@@ -21,12 +24,21 @@ const SHARE: f64 = 0.1;
 /// fro in two steps of the fluid, such as the breathing of a sheet between two layers of water, grow with 0.1
 /// for some moduli. With 0.2 none grew, at 2.2 to 40 MPa in steps of 4.5 %.
 const SHARE_WITH_SUCTION: f64 = 0.2;
-/// Largest share of a body that touches nothing: the leapfrog of the sub-steps, 0.65 of the stable ones, is
-/// stable up to 0.68.
+/// Largest share of a body that touches nothing.
 const MOST: f64 = 0.65;
 /// The same of others, and with steps longer than the stable ones: bonds and contacts together may take 0.9
 /// of those, which leaves room for 0.22.
 const MOST_IN_CONTACT: f64 = 0.2;
+/// Largest share with which sub-steps of it need not be shorter. By the estimate of the stable step, of which
+/// sub-steps take 0.65, that would be 0.68; a sheet of two layers is stable with 0.28, and not with 0.44.
+const ROOM: f64 = 0.25;
+
+/// Share in the longest long step over the largest one otherwise.
+const LONGEST: f64 = 2.0;
+/// Stable step of usual bodies over that in which longitudinal waves cross a spacing.
+const STABLE: f64 = 0.7;
+/// Margin of the damping over the growth of modes that move the whole thickness of a body.
+const MARGIN: f64 = 2.0;
 
 /// Asks for the damping of all deformable bodies of a scene with fluids, if they may take sub-steps.
 pub fn damp_sub_cycled_bodies(sim: &mut SimBuilder<'_>) {
@@ -34,7 +46,12 @@ pub fn damp_sub_cycled_bodies(sim: &mut SimBuilder<'_>) {
     let soft: Vec<_> = soft.map(|body| body.id).collect();
     for id in soft {
         if let Some((needed, most)) = share_of(id, sim) {
-            let damping = DampedSubSteps { share: needed.min(most) };
+            let factor = sim.scene().time.step.factor();
+            let least = least_time(id, sim);
+            let touches = most < MOST;
+            let room = if touches { most } else { ROOM };
+            let share = needed.min(most);
+            let damping = DampedSubSteps { share, room, touches, factor, least, most: LONGEST * most };
             sim.extend_bodies(BodySet::new([id]), "damping of its sub-steps", damping);
         }
     }
@@ -46,6 +63,49 @@ pub fn share_of_long_step(id: BodyId, sim: &SimBuilder<'_>) -> f64 {
     share_of(id, sim).map_or(1.0, |(needed, most)| (most / needed).min(1.0).sqrt())
 }
 
+/// Largest long step beside a deformable body, s. The time of the damping grows with the square of the long
+/// step and shortens the sub-steps once it exceeds what they have room for: at this step by about a half.
+pub fn longest_step(id: BodyId, sim: &SimBuilder<'_>) -> f64 {
+    let body = sim.body(id);
+    let Some((_, most)) = share_of(id, sim).filter(|_| body.kind == BodyKind::Solid) else {
+        return f64::INFINITY;
+    };
+    let speed = body.material.sound_speed().unwrap_or(0.0);
+    least_time(id, sim).longest_step(LONGEST * most * STABLE * body.spacing / speed)
+}
+
+/// Least time of the damping. A mode on whose mass m the fluid acts with the stiffness `kappa m` gains no
+/// energy if that time is `kappa dt^3 / 24` in a long step dt of half its period. Of the modes of a stiff
+/// body, those that matter move its whole thickness, so that kappa is the stiffness of the fluid before all
+/// of its surface over its mass; and dt is at most 0.4 h / c_0, so that `dt / h` is at most 0.4 / c_0.
+fn least_time(id: BodyId, sim: &SimBuilder<'_>) -> LeastTime {
+    let impedance = |body: &BodyPlan| match body.material.law {
+        Law::Fluid(_) => body.material.density * body.material.sound_speed().unwrap_or(0.0),
+        _ => 0.0,
+    };
+    let impedance = sim.bodies().iter().map(impedance).fold(0.0, f64::max);
+    let body = sim.body(id);
+    let volume = body.sites.iter().map(|site| site.volume).sum::<f64>();
+    let sides = if has_suction(sim) { 1.0 } else { 0.5 };
+    let area = surface_area(id, sim).unwrap_or(0.0);
+    let rate = MARGIN * sides * STIFFNESS * 0.4 / 24.0 * impedance * area / (body.material.density * volume);
+    LeastTime { rate, lowest: lowest_frequency(body, 2.0 * volume / area) }
+}
+
+/// Lowest frequency of a body, rad/s: the first bending of a cantilever of its `thickness`, m, and its
+/// length, `3.52 (E / (12 rho))^(1/2) t / l^2`; those of bodies that are held otherwise, and of compact ones,
+/// are higher.
+fn lowest_frequency(body: &BodyPlan, thickness: f64) -> f64 {
+    let (min, max) = body.sites.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(min, max), site| {
+        (min.min(site.position), max.max(site.position))
+    });
+    let young = match &body.material.law {
+        Law::Solid(law) => law.elastic().young,
+        Law::Fluid(_) | Law::Nothing => 0.0,
+    };
+    3.52 * (young / (12.0 * body.material.density)).sqrt() * thickness / (max - min).length_squared()
+}
+
 /// Share of the damping that a body needs, and the largest one; none where it takes no sub-steps.
 fn share_of(id: BodyId, sim: &SimBuilder<'_>) -> Option<(f64, f64)> {
     let time = &sim.scene().time;
@@ -55,7 +115,7 @@ fn share_of(id: BodyId, sim: &SimBuilder<'_>) -> Option<(f64, f64)> {
     let flow = sim.bodies().iter().find(|body| matches!(body.material.law, Law::Fluid(_)))?;
     let body = sim.body(id);
     let share = if has_suction(sim) { SHARE_WITH_SUCTION } else { SHARE };
-    let is_long = matches!(time.step, StepRule::Adaptive { factor } if factor > 1.0);
+    let is_long = time.step.factor() > 1.0;
     let has_room = !is_long && !sim.touching_pairs().names(&body.name);
     let most = if has_room { MOST } else { MOST_IN_CONTACT };
     Some((share * (flow.spacing / body.spacing).max(1.0), most))
