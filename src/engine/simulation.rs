@@ -351,7 +351,7 @@ impl Simulation {
             ledger: &mut self.ledger,
             limits: &mut self.limits,
             warnings: &mut self.warnings,
-            part: StepPart::long(&self.sub_steps.phases, self.clock.step),
+            part: StepPart::long(&self.sub_steps.phases, self.sub_steps.long.is_some(), self.clock.step),
             stop: &mut self.stop,
         };
         self.schedule.run(&mut step, wanted)

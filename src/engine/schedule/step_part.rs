@@ -19,20 +19,22 @@ pub enum Cadence {
 pub struct StepPart<'s> {
     short: bool,
     long: Option<f64>,
+    divided: bool,
     number: u64,
     sub_cycled: &'s [PhaseId],
 }
 
 impl<'s> StepPart<'s> {
-    /// The long step of this number; without sub-cycled phases, the whole of the step.
-    pub fn long(sub_cycled: &'s [PhaseId], number: u64) -> Self {
-        Self { short: false, long: None, number, sub_cycled }
+    /// The long step of this number, `divided` into several sub-steps or not; without sub-cycled phases, the
+    /// whole of the step.
+    pub fn long(sub_cycled: &'s [PhaseId], divided: bool, number: u64) -> Self {
+        Self { short: false, long: None, divided, number, sub_cycled }
     }
 
     /// The sub-step of this number since time 0; `long` is the length of the long step, s, where there are
     /// others in it.
     pub fn short(sub_cycled: &'s [PhaseId], long: Option<f64>, number: u64) -> Self {
-        Self { short: true, long, number, sub_cycled }
+        Self { short: true, long, divided: long.is_some(), number, sub_cycled }
     }
 
     /// Number of steps done before this one by the clock of this part of the step: sub-steps by that of
@@ -44,6 +46,11 @@ impl<'s> StepPart<'s> {
     /// Length of the long step of which this is one of several sub-steps, s.
     pub fn long_step(self) -> Option<f64> {
         self.long
+    }
+
+    /// Whether the long step has several sub-steps: known to what ends it.
+    pub fn is_divided(self) -> bool {
+        self.divided
     }
 
     /// Whether the body moves in this part of the step.

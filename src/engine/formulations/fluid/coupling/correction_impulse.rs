@@ -32,6 +32,8 @@ pub struct ParticleRows<'a> {
 pub struct Particles<'a> {
     /// Length of the long step, s; zero before the first.
     pub dt: f64,
+    /// Whether it has several sub-steps.
+    pub divided: bool,
     /// The particles in their current state.
     pub records: &'a [FlowParticle],
     /// Positions at the start of the long step, m.
@@ -130,6 +132,9 @@ impl Particles<'_> {
             sum.removed -= 0.5 * rows.frozen[k].0.dot(moved);
             0.5 * moved
         };
+        // In a step that is not divided the change is as long as the step: what the pressure moves to and fro
+        // in two of them has no velocity here. Friction, which depends on the velocity, leaves none of that.
+        let pressed = if self.divided { late } else { 0.5 * moved };
         let change = self.change(i, k, rows);
         if let Some(drag) = &mut rows.drag {
             let moving = if self.dt > 0.0 { moved / self.dt } else { velocity };
@@ -138,7 +143,7 @@ impl Particles<'_> {
             sum.parts[0] += drag.begin(k, drag_now, moving) - given.dot(velocity);
         }
         sum.parts[0] += rows.friction[k].0.dot(moved) + (friction - rows.friction[k].0).dot(late);
-        sum.parts[1] += rows.pressure[k].0.dot(moved) + (pressure - rows.pressure[k].0).dot(late);
+        sum.parts[1] += rows.pressure[k].0.dot(moved) + (pressure - rows.pressure[k].0).dot(pressed);
         if self.removed[i] == Removed::NO {
             rows.force[k].0 += change;
         }

@@ -13,7 +13,7 @@ use super::drag;
 use super::drag::DragColumns;
 use super::exchange::{CouplingForce, CouplingFriction, CouplingPressure, Exchange};
 use super::light_body::WetSurface;
-use super::sub_cycled::{longest_step, share_of_long_step};
+use super::sub_cycled::limits_of_long_step;
 use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud, FluidState, Group, PARTS, PLACES_BEFORE, Role};
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::formulations::fluid::lists::blocks::pack_states;
@@ -139,7 +139,10 @@ struct Coupling {
 
 impl Coupling {
     fn new(phase: PhaseId, follows: bool, bodies: &BodySet, sim: &SimBuilder<'_>) -> Self {
-        let step_of = |id| (id, SURFACE * share_of_long_step(id, sim), longest_step(id, sim));
+        let step_of = |id| {
+            let (share, longest) = limits_of_long_step(id, sim);
+            (id, SURFACE * share, longest)
+        };
         Self {
             phase,
             follows,
@@ -199,6 +202,7 @@ impl Coupling {
         let before = cloud.before.get(first..first + rows.len()).unwrap_or_default();
         let particles = Particles {
             dt: step.clock.dt,
+            divided: step.part.is_divided(),
             records: &cloud.records[group.cloud.clone()],
             before,
             mass: &mass[rows.clone()],
