@@ -64,18 +64,37 @@ pub(super) fn problems(bodies: &[BodyPlan], scene: &Scene, folder: &Path) -> Vec
                 continue;
             }
             reported.push(pair);
-            let message =
-                format!("body `{}` overlaps body `{}` at {}", second.name, first.name, place(positions[i]));
-            let problem = Problem::at_path(format!("bodies[{}].shape", pair.1), message);
-            problems.push(match shapes.share_face([pair.0, pair.1], positions[i], ON_FACE * first.spacing) {
-                true => problem.help("a face that the shapes share runs through centres of their lattices, where both have particles: move it by a quarter of a spacing"),
-                false => problem
-                    .help("leave a gap of about the mean spacing between particles of different bodies")
-                    .help("a body clamped in another one: cut its place out of the other by `Difference`"),
-            });
+            problems.push(problem([first, second], [positions[i], positions[j as usize]], &mut shapes));
         }
     }
     problems
+}
+
+/// The problem of two bodies that have particles at `at`, one each, too close to each other.
+fn problem([first, second]: [&BodyPlan; 2], at: [DVec3; 2], shapes: &mut Shapes) -> Problem {
+    let pair = [first.id.0, second.id.0];
+    let share_face = shapes.share_face(pair, at[0], ON_FACE * first.spacing);
+    let path = format!("bodies[{}].shape", second.id.0);
+    if !share_face && shapes.part(pair, at) {
+        let spacings = at[0].distance(at[1]) / (0.5 * (first.spacing + second.spacing));
+        let (of, and) = (&first.name, &second.name);
+        let message = format!(
+            "particles of `{of}` and `{and}` start {spacings:.2} spacings apart at {}: \
+             lattices that are not cut along the faces of their shapes have particles right beside them",
+            place(at[0])
+        );
+        return Problem::at_path(path, message)
+            .help("give the bodies, a fluid above all, `lattice: BodyFitted()`, whose particles keep half a spacing from every face")
+            .help("or leave a gap of about the mean spacing between particles of different bodies");
+    }
+    let message = format!("body `{}` overlaps body `{}` at {}", second.name, first.name, place(at[0]));
+    let problem = Problem::at_path(path, message);
+    match share_face {
+        true => problem.help("a face that the shapes share runs through centres of their lattices, where both have particles: move it by a quarter of a spacing"),
+        false => problem
+            .help("leave a gap of about the mean spacing between particles of different bodies")
+            .help("a body clamped in another one: cut its place out of the other by `Difference`"),
+    }
 }
 
 /// The shapes of bodies, built where they are asked for; none of those that are lists of particles.
@@ -179,6 +198,7 @@ mod tests {
             assert!(error(0.1, disc, "").is_some(), "{disc}");
         }
         assert_eq!(error(0.1, "Rigid()", particles), None);
-        assert!(error(0.1, "TotalLagrangian", particles).is_some());
+        let close = error(0.1, "TotalLagrangian", particles).unwrap_or_default();
+        assert!(close.contains("spacings apart") && close.contains("BodyFitted()"), "{close}");
     }
 }
