@@ -1,12 +1,12 @@
 //! Contact nodes: particles of a deformable body, or points of a rigid one.
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
-use super::circle::CircleBeside;
 use super::crossing::Crossing;
 use super::members::Members;
+use super::node_pose::NodePose;
 use super::shape::{ParticleShape, Proximity, on_surface};
-use crate::rigid::{Feature, RigidBody, Rim, Round};
+use crate::rigid::{RigidBody, RigidNode, Round};
 use crate::shapes::SurfacePoint;
 use crate::solids::LocalMotion;
 
@@ -34,31 +34,6 @@ impl NodeView<'_> {
         match self {
             Self::Particles(members) => members.len(),
             Self::Rigid(body) => body.nodes.list().len(),
-        }
-    }
-
-    /// What part of the surface of a rigid body a node is of, in its reference configuration.
-    pub fn feature(&self, i: usize) -> Feature {
-        match self {
-            Self::Particles(_) => Feature::Corner,
-            Self::Rigid(body) => body.nodes.list()[i].feature,
-        }
-    }
-
-    /// A direction of the reference configuration of a rigid body as the body has turned.
-    pub fn turned(&self, direction: DVec3) -> DVec3 {
-        match self {
-            Self::Particles(_) => direction,
-            Self::Rigid(body) => body.state.rotation * direction,
-        }
-    }
-
-    /// Normals of the faces that end at a point of an edge or a corner of a rigid body, or at a circle, zero
-    /// where there are fewer.
-    pub fn ending(&self, i: usize) -> [DVec3; 4] {
-        match self {
-            Self::Particles(_) => [DVec3::ZERO; 4],
-            Self::Rigid(body) => body.nodes.list()[i].ending.map(|normal| body.state.rotation * normal),
         }
     }
 
@@ -132,24 +107,38 @@ impl NodeView<'_> {
         on_surface(distance, normal, shape)
     }
 
-    /// The nearest point of the surface of a tool to a node with its centre at `x`, m. For a circle it is
-    /// that to its deepest point, and for a ball to its lowest one over the plane that is tangential to the
-    /// surface at the point nearest to the centre. None where a circle lies flat or is deepest below a
-    /// ridge, and where an edge crosses none of the tool.
+    /// The nearest point of the surface of a tool to a node with its centre at `x`, m. None where a circle
+    /// lies flat or is deepest below a ridge, and where an edge crosses none of the tool.
     pub fn nearest(&self, i: usize, x: DVec3, tool: &RigidBody) -> Option<SurfacePoint> {
         if let Some(crossing) = self.crossing(i, x, tool) {
             return Some(crossing?.at);
         }
-        if let Some(rim) = self.circle(i, tool) {
-            let (surface, center, size) = (&*tool.surface, tool.reference(x), self.size(i));
-            return CircleBeside { surface, center, rim, size }.deepest();
+        match self.node(i) {
+            Some(node) => self.pose(x, tool).nearest(node, &*tool.surface),
+            None => Some(tool.surface.closest(tool.reference(x))),
         }
-        let nearest = tool.surface.closest(tool.reference(x));
-        let Some(arm) = self.lowest(i, nearest.normal, tool) else { return Some(nearest) };
-        let below = arm.dot(nearest.normal);
-        let signed_distance = nearest.signed_distance + below;
-        let point = tool.reference(x) + arm - nearest.normal * signed_distance;
-        Some(SurfacePoint { point, signed_distance, ..nearest })
+    }
+
+    /// The node of a rigid body.
+    pub fn node(&self, i: usize) -> Option<&RigidNode> {
+        match self {
+            Self::Particles(_) => None,
+            Self::Rigid(body) => Some(&body.nodes.list()[i]),
+        }
+    }
+
+    /// Whether a node is an edge, which touches where it crosses another one.
+    pub fn crosses(&self, i: usize) -> bool {
+        self.node(i).is_some_and(|node| matches!(node.round, Round::Edge(_)))
+    }
+
+    /// How a tool sees a node with its centre at `x`, m.
+    pub fn pose(&self, x: DVec3, tool: &RigidBody) -> NodePose {
+        let rotation = match self {
+            Self::Particles(_) => DQuat::IDENTITY,
+            Self::Rigid(body) => body.state.rotation,
+        };
+        NodePose { x: tool.reference(x), turn: tool.state.rotation.inverse() * rotation }
     }
 
     /// Where the edge with its middle at `x` crosses one of a tool, if it comes so near that this counts, and
@@ -162,34 +151,12 @@ impl NodeView<'_> {
         Some(Crossing::of(&*tool.surface, [middle - half, middle + half], self.size(i)))
     }
 
-    /// A circle of a cylinder, in the reference configuration of the tool, if the node is one.
-    pub fn circle(&self, i: usize, tool: &RigidBody) -> Option<Rim> {
-        let Self::Rigid(body) = self else { return None };
-        match body.nodes.list()[i].round {
-            Round::Rim(rim) if !rim.is_ball() => {
-                Some(rim.turned(tool.state.rotation.inverse() * body.state.rotation))
-            }
-            _ => None,
-        }
-    }
-
     /// Whether the lowest point of a ball is inside of the tool; a tool in the hole of a shell is near its
     /// centre, and does not touch its outside.
     pub fn reaches(&self, i: usize, x: DVec3, normal: DVec3, tool: &RigidBody) -> bool {
-        let Some(arm) = self.lowest(i, normal, tool) else { return true };
-        tool.surface.closest(tool.reference(x) + arm).signed_distance < 0.0
-    }
-
-    /// From the centre of a ball to its lowest point over a plane of that normal, both in the reference
-    /// configuration of the tool, if the node is one.
-    fn lowest(&self, i: usize, normal: DVec3, tool: &RigidBody) -> Option<DVec3> {
-        let Self::Rigid(body) = self else { return None };
-        let Round::Rim(rim) = body.nodes.list()[i].round else { return None };
-        if !rim.is_ball() {
-            return None;
-        }
-        let turn = body.state.rotation.inverse() * tool.state.rotation;
-        rim.lowest(turn * normal).map(|arm| turn.inverse() * arm)
+        let pose = self.pose(x, tool);
+        let Some(arm) = self.node(i).and_then(|node| pose.lowest_of_ball(node, normal)) else { return true };
+        tool.surface.closest(pose.x + arm).signed_distance < 0.0
     }
 
     /// Whether contact at a point of a tool is left to the nodes of the tool, because its round outline has

@@ -12,7 +12,7 @@ use crate::contact::laws::Touch;
 use crate::contact::response::time_step::NormalMotion;
 use crate::contact::response::{ContactEnergy, ContactState, History, Interaction, Losses, PairKey};
 use crate::parallel::BlockSum;
-use crate::rigid::{Feature, RigidBody};
+use crate::rigid::RigidBody;
 use crate::world::sum_by_row;
 
 /// A node that touches.
@@ -106,19 +106,10 @@ impl OnSurface<'_> {
         let touches = near.overlap > 0.0 && nodes.reaches(i, center, nearest.normal, tool);
         // Where the body of the node has it, a period away from the image that touches.
         touches.then(|| {
-            let share = match (&crossing, nodes.feature(i)) {
+            let share = match (&crossing, nodes.node(i)) {
                 (Some(crossing), _) => Share::of_crossing(crossing, tool),
-                (None, Feature::Corner) if nodes.circle(i, tool).is_some() => {
-                    let beside = Share::beside_ridge(&nearest, nodes.size(i), tool);
-                    beside.beside_faces(nodes.ending(i), normal)
-                }
-                (None, Feature::Corner) => Share::WHOLE.beside_faces(nodes.ending(i), normal),
-                (None, Feature::Face(_)) => Share::on_face(&nearest, nodes.size(i), tool),
-                (None, Feature::Edge(e)) => {
-                    let edge = tool.state.rotation.inverse() * nodes.turned(e);
-                    let on_edge = Share::on_edge(edge, &nearest, nodes.size(i), tool);
-                    on_edge.beside_faces(nodes.ending(i), normal)
-                }
+                (None, Some(node)) => Share::of_node(node, &nodes.pose(center, tool), &nearest, tool),
+                (None, None) => Share::WHOLE,
             };
             NodeTouch { x: center, shift: own_place - center, point: nearest.point, near, share }
         })
@@ -189,6 +180,8 @@ impl OnSurface<'_> {
         // u grad w, with the energy w u of the spring.
         let [along, couple] = share.derivatives(response.spring.energy);
         let (force, heat) = (response.force - along, losses.friction);
+        // The gradient is that with the centre of the node, and the force acts at its place.
+        let couple = if nodes.crosses(i) { couple } else { couple + (x - place).cross(along) };
         (
             response.history,
             NodePush { arm, place, shift, force, couple: -couple, center: x, turning, heat, stiffness },

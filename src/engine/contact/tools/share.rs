@@ -27,9 +27,9 @@
 
 use glam::DVec3;
 
-use crate::contact::bodies::{Crossing, RAMP, growing, share_of_slope};
-use crate::rigid::RigidBody;
-use crate::shapes::SurfacePoint;
+use crate::contact::bodies::{Crossing, NodePose, RAMP, share_of_slope};
+use crate::rigid::{Feature, RigidBody, RigidNode, Round};
+use crate::shapes::{Surface, SurfacePoint};
 
 /// Weight of a point of an edge or a corner of a face that lies on another one: the points of the face
 /// already stand for its area up to there. It is not zero, so that a body that begins to rock turns about its
@@ -39,8 +39,11 @@ const ON_FACE: f64 = 0.2;
 /// points of the other surface do not touch what is beyond the edge (`RigidNode::faces`).
 const STANDING: f64 = 0.005;
 
+/// Steps of the differences from which derivatives follow, over the size of a node, and rad.
+const STEP: f64 = 1e-6;
+
 /// The share w of a node, its gradient, 1/m, and its derivative with a rotation of the body of the node
-/// against the surface.
+/// against the surface about the centre of the node, or the crossing of an edge.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Share {
     pub share: f64,
@@ -52,53 +55,22 @@ impl Share {
     /// For nodes that always count.
     pub const WHOLE: Self = Self { share: 1.0, gradient: DVec3::ZERO, turning: DVec3::ZERO };
 
-    /// For a point that represents a length, m, and is nearest to that point of the surface of `tool`, in the
-    /// reference configuration.
-    pub fn on_face(nearest: &SurfacePoint, length: f64, tool: &RigidBody) -> Self {
-        let depth = RAMP * length;
-        let below = tool.surface.closest(nearest.point - depth * nearest.normal);
-        let share = (-below.signed_distance / depth).clamp(0.0, 1.0);
-        let across = below.normal - nearest.normal * nearest.normal.dot(below.normal);
-        let gradient = if share > 0.0 { tool.state.rotation * across / -depth } else { DVec3::ZERO };
-        Self { share, gradient, turning: DVec3::ZERO }
-    }
-
-    /// For a point that represents a length, m, and is nearest to that point of the surface of `tool`, in the
-    /// reference configuration of that, such as the deepest one of a circle. The weight is zero where another
-    /// face is as near: the point may be below the ridge between them.
-    pub fn beside_ridge(nearest: &SurfacePoint, length: f64, tool: &RigidBody) -> Self {
-        let SurfacePoint { point, normal, signed_distance } = *nearest;
-        let depth = RAMP * length;
-        let below = tool.surface.closest(point + (signed_distance - depth) * normal);
-        let share = ((signed_distance - below.signed_distance) / depth).clamp(0.0, 1.0);
-        let is_partial = share > 0.0 && share < 1.0;
-        let gradient = if is_partial { (normal - below.normal) / depth } else { DVec3::ZERO };
-        Self { share, gradient: tool.state.rotation * gradient, turning: DVec3::ZERO }
-    }
-
-    /// The same for a point of an edge along a unit vector in the reference configuration of `tool`. An edge
-    /// that stands on the face is in contact at its ends and crossings.
-    pub fn on_edge(edge: DVec3, nearest: &SurfacePoint, length: f64, tool: &RigidBody) -> Self {
-        let normal = nearest.normal;
-        let Self { share, gradient, .. } = Self::beside_ridge(nearest, length, tool);
-        let rising = if normal.dot(edge) < 0.0 { -edge } else { edge };
-        let (standing, turning) = share_of_slope(rising, normal);
-        let lying = 1.0 - standing;
-        let turning = tool.state.rotation * (-share * turning);
-        Self { share: lying * share, gradient: lying * gradient, turning }
-    }
-
-    /// The share of a point where faces of these outward normals end, on a surface of that normal.
-    pub fn beside_faces(self, ending: [DVec3; 4], normal: DVec3) -> Self {
-        let flattest = ending.into_iter().map(|own| (-own.dot(normal), own));
-        let (cosine, own) =
-            flattest.fold((0.0, DVec3::ZERO), |best, next| if next.0 > best.0 { next } else { best });
-        let (standing, turning) = growing((1.0 - cosine) / STANDING, own.cross(normal) / STANDING);
-        let part = ON_FACE + (1.0 - ON_FACE) * standing;
+    /// For a node of a rigid body, whose nearest point of the surface of `tool` is given.
+    pub fn of_node(node: &RigidNode, pose: &NodePose, nearest: &SurfacePoint, tool: &RigidBody) -> Self {
+        let weight = Weight { node, surface: &*tool.surface };
+        let share = weight.at(pose, nearest);
+        let moved = |way: DVec3, turn: DVec3| {
+            let pose = pose.moved(way, turn);
+            pose.nearest(node, weight.surface).map_or(0.0, |nearest| weight.at(&pose, &nearest))
+        };
+        let slope = |size: f64, of: &dyn Fn(DVec3) -> f64| {
+            let along = |axis: DVec3| (of(size * axis) - of(-size * axis)) / (2.0 * size);
+            tool.state.rotation * DVec3::from_array(DVec3::AXES.map(along))
+        };
         Self {
-            share: part * self.share,
-            gradient: part * self.gradient,
-            turning: part * self.turning + self.share * (1.0 - ON_FACE) * turning,
+            share,
+            gradient: slope(STEP * node.size, &|way| moved(way, DVec3::ZERO)),
+            turning: slope(STEP, &|turn| moved(DVec3::ZERO, turn)),
         }
     }
 
@@ -114,5 +86,49 @@ impl Share {
             if derivative == DVec3::ZERO { DVec3::ZERO } else { energy / self.share * derivative }
         };
         [of(self.gradient), of(self.turning)]
+    }
+}
+
+/// The weight of a node on a surface.
+struct Weight<'a> {
+    node: &'a RigidNode,
+    surface: &'a dyn Surface,
+}
+
+impl Weight<'_> {
+    /// In a pose, for which the nearest point of the surface is given.
+    fn at(&self, pose: &NodePose, nearest: &SurfacePoint) -> f64 {
+        match (self.node.feature, self.node.round) {
+            (Feature::Face(own), _) => {
+                share_of_slope(-(pose.turn * own), nearest.normal).0 * self.beside_ridge(nearest)
+            }
+            (Feature::Edge(edge), _) => {
+                // An edge that stands on the face is in contact at its ends and crossings.
+                let edge = pose.turn * edge;
+                let rising = if nearest.normal.dot(edge) < 0.0 { -edge } else { edge };
+                let lying = 1.0 - share_of_slope(rising, nearest.normal).0;
+                lying * self.beside_ridge(nearest) * self.beside_faces(pose, nearest.normal)
+            }
+            (Feature::Corner, Round::Rim(rim)) if !rim.is_ball() => {
+                self.beside_ridge(nearest) * self.beside_faces(pose, nearest.normal)
+            }
+            (Feature::Corner, _) => self.beside_faces(pose, nearest.normal),
+        }
+    }
+
+    /// Of a point that may be below the ridge between two faces, such as the deepest one of a circle: zero
+    /// where another face is as near.
+    fn beside_ridge(&self, nearest: &SurfacePoint) -> f64 {
+        let SurfacePoint { point, normal, signed_distance } = *nearest;
+        let depth = RAMP * self.node.size;
+        let below = self.surface.closest(point + (signed_distance - depth) * normal);
+        ((signed_distance - below.signed_distance) / depth).clamp(0.0, 1.0)
+    }
+
+    /// Of a point where faces end, on a surface of that normal.
+    fn beside_faces(&self, pose: &NodePose, normal: DVec3) -> f64 {
+        let cosine =
+            self.node.ending.map(|own| -(pose.turn * own).dot(normal)).into_iter().fold(0.0, f64::max);
+        ON_FACE + (1.0 - ON_FACE) * ((1.0 - cosine) / STANDING).clamp(0.0, 1.0)
     }
 }
