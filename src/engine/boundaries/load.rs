@@ -12,6 +12,7 @@ use super::flow_load;
 use super::load_law::LoadLaw;
 use super::on_rigid::push_beside;
 use super::part::{Part, parts_of, phases_of};
+use super::pulses;
 use crate::parallel::{Picked, sum_over_blocks};
 use crate::plugin::{BodyKind, Selection, SetupError, SimBuilder};
 use crate::rigid::{MovingFunction, RIGID_BODIES};
@@ -75,6 +76,8 @@ pub(super) fn apply(
         let functions = law.functions().into_iter().filter(|value| k == 0 || value.depends_on_place());
         functions.for_each(|value| sim.extend(MovingFunction { body, value, place }));
     }
+    let places = parts.iter().flat_map(|part| pulses::some_of(&part.points).map(|place| (part.body, place)));
+    pulses::watch(label, &law.functions(), places, sim);
     let load = Load { label, law, parts, kinds, forces, next: Vec::new() };
     let mut system = System::new(Stage::External, label, load).on_phases(phases).by_body();
     if turns {

@@ -22,6 +22,9 @@ mod on_rigid;
 mod part;
 mod prescribed;
 mod pressure;
+mod pulses;
+#[cfg(test)]
+mod pulses_tests;
 mod rigid_part;
 mod rotation_rate;
 mod skin_load;

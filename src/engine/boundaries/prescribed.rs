@@ -10,10 +10,12 @@ use glam::DVec3;
 
 use super::field::VectorField;
 use super::part::{Part, parts_of, phases_of};
+use super::pulses;
 use super::rigid_part::{require_one_motion, split_rigid};
 use crate::parallel::{Picked, sum_over_blocks};
 use crate::plugin::{BodyKind, MotionOfPlace, Prescription, Selection, SetupError, SimBuilder};
 use crate::rigid::{Drive, DrivenBody, MovingFunction};
+use crate::scene::Expression;
 use crate::schedule::{AccountKind, Clock, Mode, Run, Stage, Step, StepError, System};
 use crate::world::{Column, Mass, Position, Removed, Velocity};
 
@@ -57,7 +59,11 @@ pub(super) fn prescribe(
     if selection.is_empty() {
         return Ok(());
     }
-    let motion = PrescribedMotion { name, kind, field, parts: parts_of(&selection, sim), time_increment };
+    let parts = parts_of(&selection, sim);
+    let functions: Vec<Expression> = field.functions().cloned().collect();
+    let places = parts.iter().flat_map(|part| pulses::some_of(&part.points).map(|place| (part.body, place)));
+    pulses::watch(name, &functions, places, sim);
+    let motion = PrescribedMotion { name, kind, field, parts, time_increment };
     sim.prescribe(&selection, motion.field.axes(), prescription(&motion))?;
     let motion = Arc::new(motion);
     start_walls(&motion, sim);

@@ -131,4 +131,8 @@ impl LoadLaw for Follower {
     fn is_constant(&self, _: &Part) -> bool {
         false
     }
+
+    fn functions(&self) -> Vec<Expression> {
+        vec![self.value.clone()]
+    }
 }

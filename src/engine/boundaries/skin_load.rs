@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use super::beside_held;
 use super::field::VectorField;
+use super::pulses;
 use super::symmetry::planes_of;
 use crate::notation::{place, quantity};
 use crate::plugin::{BodyPlan, Offer, SelectedFacet, Selection, SetupError, SimBuilder, selected_facets};
@@ -33,6 +34,16 @@ pub(super) enum LoadKind {
     Traction(VectorField),
     /// Against the normal, per area of now.
     Pressure(Expression),
+}
+
+impl LoadKind {
+    /// The functions of place and time.
+    pub fn functions(&self) -> Vec<Expression> {
+        match self {
+            Self::Traction(field) => field.functions().cloned().collect(),
+            Self::Pressure(value) => vec![value.clone()],
+        }
+    }
 }
 
 /// A load on facets of the skin of a body.
@@ -170,6 +181,11 @@ pub(super) fn apply(
         let help = "name a side that the body has, or a larger `within`";
         return Err(SetupError::parameter("on", "no part of the surface is selected", help));
     }
+    let places = loads.iter().flat_map(|(facets, patch): &(Vec<(SelectedFacet, DVec3, f64)>, Patch)| {
+        let body = patch.skin.body;
+        pulses::some_of(facets).map(move |(_, middle, _)| (body, middle))
+    });
+    pulses::watch(label, &make().functions(), places, sim);
     let factor = area.map_or(1.0, |area| area / total);
     let loads = loads.into_iter().map(|(facets, patch)| SkinLoad {
         label,

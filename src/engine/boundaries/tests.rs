@@ -9,7 +9,7 @@ use crate::simulation::{Checkpoint, Simulation};
 use crate::world::{BodyId, Column, Mass, Position, ReferencePosition, Velocity};
 
 /// A simulation of a scene text.
-fn simulation(text: &str) -> Simulation {
+pub(super) fn simulation(text: &str) -> Simulation {
     let mut registry = Registry::standard();
     registry.plugin::<super::image_tests::Stiffener>();
     let built =

@@ -30,6 +30,17 @@ const SHORTEST: f64 = 1e-7;
 /// Factor by which steps may grow: so far ahead is looked.
 const GROWTH: f64 = 1024.0;
 
+/// The change of a function at a place, m, in a run until `end`, s; in the unit of its value.
+pub fn change_in_run(value: &Expression, place: DVec3, end: f64) -> f64 {
+    let times = (0..=TIMES).map(|k| end * f64::from(k) / f64::from(TIMES));
+    let values = times.map(|t| value.eval(place, t));
+    let [low, high] =
+        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)]);
+    // Times may miss all there is, such as one short pulse.
+    let [low, high] = if high > low { [low, high] } else { value.range_over_time(place, [0.0, end]) };
+    high - low
+}
+
 /// The functions that change.
 pub(super) struct FollowedFunctions {
     /// Each with the largest change in one step.
@@ -40,19 +51,9 @@ pub(super) struct FollowedFunctions {
 
 impl FollowedFunctions {
     pub fn new(functions: Vec<MovingFunction>, end: f64) -> Self {
-        let width = |[low, high]: [f64; 2]| high - low;
-        let change = |function: &MovingFunction| {
-            let times = (0..=TIMES).map(|k| end * f64::from(k) / f64::from(TIMES));
-            let values = times.map(|t| function.value.eval(function.place, t));
-            let [low, high] =
-                values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)]);
-            // Times may miss all there is, such as one short pulse.
-            let seen = if high > low { high - low } else { width(function.range([0.0, end])) };
-            CHANGE * seen
-        };
         let changing = functions.into_iter().filter(|function| function.value.depends_on_time());
         let functions = changing.map(|function| {
-            let change = change(&function);
+            let change = CHANGE * change_in_run(&function.value, function.place, end);
             (function, change)
         });
         Self { functions: functions.filter(|(_, change)| *change > 0.0 && change.is_finite()).collect(), end }
