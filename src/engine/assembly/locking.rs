@@ -33,8 +33,13 @@ fn of_body(body: &BodyPlan, sim: &SimBuilder<'_>) -> Option<String> {
     let needed = (ACROSS * (bulk / (NEARLY * shear)).powf(EXPONENT)).ceil();
     let across = particles_across(body, sim)?;
     (across < needed).then(|| {
+        let other = if needed > ACROSS.ceil() {
+            format!(", or state a ratio of 0.49, which needs {:.0}", ACROSS.ceil())
+        } else {
+            String::new()
+        };
         format!(
-            "body `{}` is nearly incompressible (Poisson's ratio {}) and some {across:.0} particles thick: where it bends it is too stiff, as thin bodies then lock; give it {needed:.0} or more, or state a ratio of 0.49 or less",
+            "body `{}` is nearly incompressible (Poisson's ratio {}) and some {across:.0} particles thick: where it bends it is too stiff, as thin bodies then lock; give it {needed:.0} or more{other}",
             body.name,
             quantity_to(poisson, "1", 5),
         )
@@ -57,7 +62,7 @@ mod tests {
     use crate::plugin::Registry;
     use crate::scene::{Source, parse};
 
-    fn told(poisson: f64, across: f64) -> bool {
+    fn warnings(poisson: f64, across: f64) -> Vec<String> {
         let text = format!(
             r#"(dimension: Two, materials: {{"m": NeoHookean(density: 1000, young: 1e6, poisson: {poisson:?})}},
                 bodies: [(name: "b", material: "m", shape: Rotate(shape: Box(min: (0, 0), max: (3, {:?})), angle_degrees: 30),
@@ -67,7 +72,21 @@ mod tests {
         );
         let (scene, source) = parse(Source::new("rubber.ron", &text)).unwrap_or_else(|e| panic!("{e}"));
         let sim = build(&scene, &source, &Registry::standard()).unwrap_or_else(|e| panic!("{e}"));
-        sim.warnings().iter().any(|text| text.contains("nearly incompressible"))
+        sim.warnings().to_vec()
+    }
+
+    fn told(poisson: f64, across: f64) -> bool {
+        warnings(poisson, across).iter().any(|text| text.contains("nearly incompressible"))
+    }
+
+    /// A body of that ratio was told to state it.
+    #[test]
+    fn a_ratio_is_advised_where_another_one_is_stated() {
+        for (poisson, advised) in [(0.49, false), (0.499, true)] {
+            let texts = warnings(poisson, 4.0);
+            let text = texts.iter().find(|text| text.contains("nearly incompressible")).expect("a warning");
+            assert_eq!(text.contains("a ratio of 0.49,"), advised, "{text}");
+        }
     }
 
     #[test]
