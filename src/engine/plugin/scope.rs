@@ -37,6 +37,9 @@ impl SimBuilder<'_> {
                 let BodyPlan { name, formulation, .. } = self.body(id);
                 format!("this {}, and body `{name}` has the formulation `{formulation}`", what())
             }
+            None if self.bodies().iter().any(fits) => {
+                format!("this {}, and all of them have it in their own lists", what())
+            }
             None => format!("this {}, and the scene has none", what()),
         };
         Err(SetupError::parameter("", message, "leave it out"))
