@@ -11,11 +11,27 @@ const PARALLEL: f64 = 0.5;
 /// Sine of the angle between a line and the periodic axes below which it runs along them.
 const ALONG: f64 = 1e-6;
 
-/// Whether a region contains a place or one of its images along the axes whose `lengths`, m, are not zero.
-pub fn contains_image(region: &dyn Region, place: DVec3, lengths: DVec3) -> bool {
+/// Share of the places `foot + cell` that a region or one of its images contains; images along the axes
+/// whose `lengths`, m, are not zero.
+pub fn contained_share(
+    region: &dyn Region,
+    foot: DVec3,
+    cell: impl ExactSizeIterator<Item = DVec3> + Clone,
+    lengths: DVec3,
+) -> f64 {
     // Half a period farther, as rounding must not matter: the region says what is in it.
     let reach = 0.5 * lengths.max_element();
-    images_near(&region.bounds(), place, lengths, reach).any(|image| region.contains(image))
+    let bounds = region.bounds();
+    let images = |place| images_near(&bounds, place, lengths, reach);
+    let extent = cell.clone().map(DVec3::length).fold(0.0, f64::max);
+    let distance = images(foot).map(|image| region.distance(image)).fold(f64::INFINITY, f64::min);
+    if distance.abs() > extent {
+        // All of them are on one side of the boundary.
+        return if distance < 0.0 { 1.0 } else { 0.0 };
+    }
+    let places = cell.len();
+    let contained = cell.filter(|x| images(foot + *x).any(|image| region.contains(image))).count();
+    contained as f64 / places as f64
 }
 
 /// The period, m, over which a plane with that unit normal goes on into the next image: of several axes that

@@ -58,7 +58,8 @@ pub fn resolve(
                 let problem = Problem::at_path(error.path.clone(), error.message());
                 vec![problem.help("give a shape of the scene's dimension")]
             })?;
-            Box::new(FluxGauge { at, normal, within })
+            let plane = sim.dimension() == Dimension::Two;
+            Box::new(FluxGauge::new(at, normal, within, plane))
         }
         Quantity::FluidForce => Box::new(ReactionGauge { selection: selected()?, about: None }),
         Quantity::FluidTorque { about } => {

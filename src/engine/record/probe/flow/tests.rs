@@ -221,6 +221,17 @@ fn the_flux_through_a_plane_is_speed_times_height() {
     near(&first(&scene(part)), &[("flux", 0.5)], 1e-9);
 }
 
+/// The border of a part may lie anywhere among the particles, which are 25 mm apart.
+#[test]
+fn the_flux_through_a_part_of_a_plane_is_that_of_its_length() {
+    for (low, high) in [(0.2501, 0.4), (0.1, 0.1375), (0.2625, 0.2875), (0.3, 0.31)] {
+        let part = format!("Flux(normal: (1, 0), within: Box(min: (-1, {low}), max: (0.512, {high})))");
+        let probe = at(&part, "at: (0.512, 0.1)");
+        let found = first(&text(WATER, r#""2", "1""#, "(0, 0)", &probe));
+        near(&found, &[("flux", 2.0 * (high - low))], 0.07 * 2.0 * 0.025);
+    }
+}
+
 /// A channel 1 m long and 0.5 m high that is periodic along x.
 fn in_a_periodic_channel(velocity: &str, gravity: &str, probe: &str) -> f64 {
     let domain = "domain: (min: (0, -1), max: (1, 3), periodic: [X])";
