@@ -69,6 +69,7 @@ pub use density::{DensityShift, DisplacementAccount, SHIFTING_ENERGY};
 pub(crate) use fields::fields;
 pub use formulation::Fluid;
 pub use lanes::{FlowParticle, FluidKernel};
+pub use passes::Reaction;
 pub use setup::estimate_sound_speeds;
 pub use stabilizers::{Interior, Repayment, displace};
 pub use walls::{Slip, Wall};

@@ -82,7 +82,7 @@ impl FlowCloud {
     }
 
     /// Number of the first body with rows from this one on.
-    pub(super) fn group_at(&self, row: usize) -> usize {
+    pub(in crate::formulations::fluid) fn group_at(&self, row: usize) -> usize {
         self.groups.partition_point(|group| group.cloud.end <= row)
     }
 }

@@ -1,4 +1,4 @@
-//! The point of action of the pressure on bodies, deformable ones and those of which a part is measured.
+//! The point of action of the pressure on deformable bodies.
 //!
 //! The pressure force of a pair across a surface acts on a particle below it. Taken at the midpoint of the
 //! pair, which on average lies on the surface, half of its moment belongs to the fluid; the other half,

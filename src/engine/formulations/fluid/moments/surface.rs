@@ -23,21 +23,6 @@ impl SurfaceMoments {
         }
     }
 
-    /// The same for a measurement on a part of a boundary, deformable or not. Forces that act below the
-    /// surface of a wall make a tension along it, which would be measured too where the part ends.
-    pub fn add_measured(
-        &mut self,
-        cloud: &FlowCloud,
-        group: &Group,
-        total: &mut [Force],
-        parts: &mut [DVec3],
-    ) {
-        self.friction.add(cloud, group, total, parts);
-        if let Some(near) = cloud.any_neighborhood(group) {
-            self.pressure.add(cloud, group, near, total, parts);
-        }
-    }
-
     /// Adds to `drag` how fast the friction on each particle grows with its velocity, kg/s.
     pub fn add_drag(&self, drag: &mut [f64]) {
         self.friction.add_drag(drag);

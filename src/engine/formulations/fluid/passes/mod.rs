@@ -16,3 +16,4 @@ mod reaction;
 
 pub use compression::Compression;
 pub use force::{FLUID_FORCE, FlowForce, friction_on, reads_flow};
+pub use reaction::Reaction;

@@ -324,7 +324,8 @@ fn a_body_that_rises_between_walls_that_do_not_pull_is_warned_of() {
 }
 
 /// Forces of still water on parts of one wall: pairs act below its surface, and the tension along it that
-/// this makes was measured with the forces where a part ends.
+/// this makes was measured with the forces where a part ends. A single row bears all of the pressure on it,
+/// and no row behind it any (1.39 of it and less than nothing, when rows had the forces summed for them).
 #[test]
 fn a_part_of_a_wall_bears_the_pressure_on_it_alone() {
     let mut sim = simulation(
@@ -334,23 +335,69 @@ fn a_part_of_a_wall_bears_the_pressure_on_it_alone() {
                 (name: "tank", material: "wall", spacing: 0.05, formulation: Wall(slip: Free),
                  shape: Difference(Box(min: (-0.2, -0.2), max: (1.4, 0.8)), Box(min: (0, 0), max: (1.2, 2)))),
             ],
-            probes: [
-                (name: "half", on: Select(body: "tank", within: Box(min: (0.6, -1), max: (2, 2))), quantity: FluidForce),
-                (name: "above", on: Select(body: "tank", within: Box(min: (1.2, 0.3), max: (2, 2))), quantity: FluidForce),
-            ],
+            probes: [(name: "half", on: Select(body: "tank", within: Box(min: (0.6, -1), max: (2, 2))), quantity: FluidForce)],
             time: (end: 1e-3))"#,
     );
     sim.run(|_| true).expect("a run");
     let cloud = sim.resources().get::<FlowCloud>();
-    let forces = cloud.forces_on(BodyId(1)).expect("a wet tank");
     let places = column::<Position>(&sim, 1);
-    let on = |low: [f64; 2]| -> DVec3 {
-        let is_there = |x: &Position| x.0.x > low[0] && x.0.y > low[1];
-        places.iter().zip(&forces).filter(|(x, _)| is_there(x)).map(|(_, (force, _))| *force).sum()
+    let on = |low: [f64; 2], high: [f64; 2]| {
+        let is_there = |x: &Position| x.0.cmpge(DVec3::new(low[0], low[1], -1.0)).all();
+        let is_before = |x: &Position| x.0.cmple(DVec3::new(high[0], high[1], 1.0)).all();
+        let is_part: Vec<bool> = places.iter().map(|x| is_there(x) && is_before(x)).collect();
+        cloud.reaction_on_part(BodyId(1), &is_part, &places, DVec3::X * 1.2).expect("a wet tank")
     };
     // rho g H^2 / 2 against the right side, of which a quarter is on its upper half.
     let exact = 0.5 * 1000.0 * 10.0 * 0.6 * 0.6;
-    let (half, above) = (on([0.6, -1.0]), on([1.2, 0.3]));
+    let (half, above) = (on([0.6, -1.0], [2.0, 2.0]).force, on([1.2, 0.3], [2.0, 2.0]).force);
     assert!((half.x / exact - 1.0).abs() < 0.01, "{}", half.x / exact);
+    assert!((above.x / exact - 0.25).abs() < 0.01, "{}", above.x / exact);
     assert!(above.y.abs() < 0.005 * exact, "{}", above.y / exact);
+    let (row, behind) = (on([1.2, -0.2], [1.25, 2.0]), on([1.25, -0.2], [2.0, 2.0]));
+    // In the corner the floor has a share, a seventh of a spacing.
+    assert!((row.force.x / exact - 1.0).abs() < 0.03, "{}", row.force.x / exact);
+    assert!(behind.force.length() < 0.01 * exact, "{}", behind.force / exact);
+    // Of the hydrostatic pressure, at a third of the depth.
+    assert!((row.torque.z / (-0.2 * exact) - 1.0).abs() < 0.03, "{}", row.torque.z / exact);
+    let floor = on([0.2, -0.05], [1.0, 0.0]).force;
+    assert!((floor.y / (-1000.0 * 10.0 * 0.6 * 0.8) - 1.0).abs() < 0.01, "{}", floor.y);
+}
+
+/// A plate that separates water of two depths: the rows of each of its halves bear the pressure of the water
+/// before them, whether they are thicker than the support or see the water on the other side too.
+#[test]
+fn each_side_of_a_plate_bears_the_pressure_before_it() {
+    for (layers, formulation) in
+        [(2, "Rigid()"), (4, "Rigid()"), (2, "TotalLagrangian()"), (4, "TotalLagrangian()"), (4, "Wall()")]
+    {
+        let end = 0.05 * f64::from(layers) + 0.8;
+        let text = format!(
+            r#"(dimension: Two, gravity: (0, -10),
+                materials: {{"water": Fluid(density: 1000.0, sound_speed: 40.0), "rubber": NeoHookean(density: 1000, young: 1e7, poisson: 0.3)}},
+                bodies: [
+                    (name: "deep", material: "water", spacing: 0.05, formulation: Fluid, shape: Box(min: (0, 0), max: (0.8, 0.8))),
+                    (name: "low", material: "water", spacing: 0.05, formulation: Fluid, shape: Box(min: ({end}, 0), max: (1.8, 0.5))),
+                    (name: "tank", material: "wall", spacing: 0.05, formulation: Wall(slip: Free),
+                     shape: Difference(Box(min: (-0.2, -0.2), max: (2.0, 1.0)), Union([Box(min: (0, 0), max: (1.8, 2)), Box(min: (0.8, -0.2), max: ({end}, 0.2))]))),
+                    (name: "plate", material: "rubber", spacing: 0.05, formulation: {formulation}, shape: Box(min: (0.8, -0.2), max: ({end}, 1.0))),
+                ],
+                conditions: [Fix(on: Select(body: "plate"))],
+                probes: [(name: "side", on: Select(body: "plate", face: MinX), quantity: FluidForce)],
+                time: (end: 1e-3))"#
+        );
+        let mut sim = simulation(&text);
+        sim.run(|_| true).expect("a run");
+        let cloud = sim.resources().get::<FlowCloud>();
+        let places = column::<Position>(&sim, 3);
+        let middle = 0.4 + 0.5 * end;
+        for (is_left, depth) in [(true, 0.8), (false, 0.5)] {
+            let is_part: Vec<bool> =
+                places.iter().map(|x| (x.0.x < middle) == is_left && x.0.y > 0.2).collect();
+            let part =
+                cloud.reaction_on_part(BodyId(3), &is_part, &places, DVec3::ZERO).expect("a wet plate");
+            let exact = 0.5 * 1000.0 * 10.0 * f64::powi(depth - 0.2, 2) * if is_left { 1.0 } else { -1.0 };
+            let ratio = part.force.x / exact;
+            assert!((ratio - 1.0).abs() < 0.01, "{layers} {formulation}: {ratio}");
+        }
+    }
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::formulations::fluid::FlowCloud;
+use crate::formulations::fluid::{FlowCloud, Reaction};
 use crate::parallel::BlockSum;
 use crate::plugin::Selection;
 use crate::record::probe::measure::Measure;
@@ -14,22 +14,6 @@ pub struct ReactionGauge {
     pub(super) selection: Selection,
     /// The point about which the force turns; without it the force itself is measured.
     pub(super) about: Option<DVec3>,
-}
-
-/// Force, N, its viscous part, and torque, N m.
-#[derive(Clone, Copy, Default)]
-struct ReactionSum {
-    force: DVec3,
-    viscous: DVec3,
-    torque: DVec3,
-}
-
-impl BlockSum for ReactionSum {
-    fn add(&mut self, next: &Self) {
-        self.force += next.force;
-        self.viscous += next.viscous;
-        self.torque += next.torque;
-    }
 }
 
 impl Measure for ReactionGauge {
@@ -46,22 +30,30 @@ impl Measure for ReactionGauge {
     }
 
     fn read(&self, world: &World, resources: &Resources) -> Result<Vec<f64>, MissingColumn> {
-        let mut sum = ReactionSum::default();
+        let mut sum = Reaction::default();
         let cloud = FlowCloud::whole(resources);
         for (body, rows) in &self.selection.parts {
             let rows = world.rows_now(*body, rows)?;
-            let Some(forces) = cloud.as_ref().and_then(|cloud| cloud.forces_on(*body)) else { continue };
             let (view, all) = world.body_view(*body);
+            let Some(cloud) = &cloud else { continue };
             let position = view.read::<Position>()?;
-            let position = &position[..];
+            let (position, about) = (&position[all.clone()], self.about.unwrap_or_default());
+            if rows.len() < all.len() {
+                let mut is_part = vec![false; all.len()];
+                rows.iter().for_each(|&row| is_part[row as usize - all.start] = true);
+                if let Some(part) = cloud.reaction_on_part(*body, &is_part, position, about) {
+                    sum.add(&part);
+                    continue;
+                }
+            }
+            let Some(forces) = cloud.forces_on(*body) else { continue };
             sum.add(&sum_by_row(all.len(), rows.len(), &|k| rows[k] as usize - all.start, &|k| {
-                let row = rows[k] as usize;
-                let (force, viscous) = forces[row - all.start];
-                let arm = position[row].0 - self.about.unwrap_or_default();
-                ReactionSum { force, viscous, torque: arm.cross(force) }
+                let row = rows[k] as usize - all.start;
+                let (force, viscous) = forces[row];
+                Reaction { force, viscous, torque: (position[row].0 - about).cross(force) }
             }));
         }
-        let ReactionSum { force, viscous, torque } = sum;
+        let Reaction { force, viscous, torque } = sum;
         Ok(match self.about {
             None => [force.to_array(), viscous.to_array()].concat(),
             Some(_) => torque.to_array().to_vec(),
