@@ -37,10 +37,8 @@ pub(in crate::contact) struct Crossing {
     pub at: SurfacePoint,
     /// d(overlap)/d(approach along the normal): |g|.
     pub scale: f64,
-    /// w, its gradient with the place of the edge, 1/m, and its derivative with a rotation of the edge.
+    /// w.
     pub share: f64,
-    pub gradient: DVec3,
-    pub turning: DVec3,
 }
 
 /// A point of the edge, and the surface beside it.
@@ -81,48 +79,29 @@ impl Crossing {
         let g = (slopes[1] * normals[0] + slopes[0] * normals[1]) / (slopes[0] + slopes[1]);
         let (scale, signed_distance) = (g.length(), before.distance.max(after.distance));
         let at = SurfacePoint { point, normal: g / scale, signed_distance };
-        let mut crossing = Self { at, scale, share: 0.0, gradient: DVec3::ZERO, turning: DVec3::ZERO };
+        let mut crossing = Self { at, scale, share: 0.0 };
         if signed_distance < 0.0 {
-            // The nearer end.
-            let [from_start, from_end] = ends.map(|end| point.distance(end));
-            let (away, way) = if from_start < from_end { (e, from_start) } else { (-e, from_end) };
-            crossing.weigh(surface, away, way, normals, RAMP * size);
+            let from_end = point.distance(ends[0]).min(point.distance(ends[1]));
+            crossing.share = crossing.weight(surface, e, from_end, normals, RAMP * size);
         }
         Some(crossing)
     }
 
-    /// Sets the weight of a crossing that is `way`, m, away from an end of the edge along the unit vector e;
-    /// the weight grows within `ramp`, m.
-    fn weigh(&mut self, surface: &dyn Surface, e: DVec3, way: f64, normals: [DVec3; 2], ramp: f64) {
+    /// Weight of a crossing of faces of these normals that is `from_end`, m, away from an end of the edge along
+    /// the unit vector e; it grows within `ramp`, m.
+    fn weight(&self, surface: &dyn Surface, e: DVec3, from_end: f64, normals: [DVec3; 2], ramp: f64) -> f64 {
         let SurfacePoint { point, signed_distance, .. } = self.at;
-        // Where the edge moves by dx, the deepest point moves by -(across . dx) along it.
-        let change = normals[0] - normals[1];
-        let across = change / change.dot(e);
-        let (end, of_end) = growing(way / ramp, -across / ramp);
         // Deeper by `ramp` below both faces.
         let below =
             surface.closest(point - (normals[0] + normals[1]) * (ramp / (1.0 + normals[0].dot(normals[1]))));
-        let third = below.normal - below.normal.dot(e) * across;
         let free = (signed_distance - below.signed_distance) / ramp;
-        let (free, of_free) = growing(free, (self.scale * self.at.normal - third) / ramp);
-        let rising = normals.map(|n| n * n.dot(e).signum());
-        let flatter = if rising[0].dot(e) < rising[1].dot(e) { rising[0] } else { rising[1] };
-        let (steep, of_steep) = share_of_slope(e, flatter);
-        self.share = steep * end * free;
-        self.gradient = steep * (free * of_end + end * of_free);
-        self.turning = end * free * of_steep;
+        let flatter = normals[0].dot(e).abs().min(normals[1].dot(e).abs());
+        share_of_slope(flatter) * (from_end / ramp).clamp(0.0, 1.0) * free.clamp(0.0, 1.0)
     }
 }
 
-/// The share w of the crossing of an edge along a unit vector that rises over a face of that normal, and its
-/// derivative with a rotation of the edge.
-pub(in crate::contact) fn share_of_slope(edge: DVec3, normal: DVec3) -> (f64, DVec3) {
-    let range = SLOPES[1] - SLOPES[0];
-    growing((normal.dot(edge) - SLOPES[0]) / range, edge.cross(normal) / range)
-}
-
-/// A weight that grows from zero to one with a value, whose derivative is given, and its own derivative.
-pub(in crate::contact) fn growing(value: f64, derivative: DVec3) -> (f64, DVec3) {
-    let is_partial = value > 0.0 && value < 1.0;
-    (value.clamp(0.0, 1.0), if is_partial { derivative } else { DVec3::ZERO })
+/// The share of an edge that rises over a face, or of a face that is inclined to another one, by an angle of
+/// that sine.
+pub(in crate::contact) fn share_of_slope(sine: f64) -> f64 {
+    ((sine - SLOPES[0]) / (SLOPES[1] - SLOPES[0])).clamp(0.0, 1.0)
 }

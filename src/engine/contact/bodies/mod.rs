@@ -18,7 +18,7 @@ mod node_view;
 
 mod sides;
 
-pub(super) use crossing::{Crossing, RAMP, share_of_slope};
+pub(super) use crossing::{RAMP, share_of_slope};
 pub use error::CONTACT;
 pub(super) use error::failed;
 pub(super) use members::{APART, BUMPS, MemberColumns, MemberParticles, Members};

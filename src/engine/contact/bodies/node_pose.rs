@@ -3,6 +3,7 @@
 use glam::{DQuat, DVec3};
 
 use super::circle::CircleBeside;
+use super::crossing::Crossing;
 use crate::rigid::{RigidNode, Round};
 use crate::shapes::{Surface, SurfacePoint};
 
@@ -18,8 +19,11 @@ pub(in crate::contact) struct NodePose {
 impl NodePose {
     /// The nearest point of a surface. For a circle it is that to its deepest point, and for a ball to its
     /// lowest one over the plane that is tangential to the surface at the point nearest to the centre. None
-    /// where a circle lies flat or is deepest below a ridge.
+    /// where a circle lies flat or is deepest below a ridge, and where an edge crosses none of the surface.
     pub fn nearest(&self, node: &RigidNode, surface: &dyn Surface) -> Option<SurfacePoint> {
+        if let Some(crossing) = self.crossing(node, surface) {
+            return Some(crossing?.at);
+        }
         let center = self.x;
         if let Round::Rim(rim) = node.round
             && !rim.is_ball()
@@ -31,6 +35,14 @@ impl NodePose {
         let signed_distance = nearest.signed_distance + arm.dot(nearest.normal);
         let point = center + arm - nearest.normal * signed_distance;
         Some(SurfacePoint { point, signed_distance, ..nearest })
+    }
+
+    /// Where an edge crosses one of a surface, if it comes so near that this counts, and if the node is an
+    /// edge.
+    pub fn crossing(&self, node: &RigidNode, surface: &dyn Surface) -> Option<Option<Crossing>> {
+        let Round::Edge(half) = node.round else { return None };
+        let half = self.turn * half;
+        Some(Crossing::of(surface, [self.x - half, self.x + half], node.size))
     }
 
     /// From the centre of a ball to its lowest point over a plane of that normal, if the node is one.

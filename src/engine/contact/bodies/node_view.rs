@@ -110,9 +110,6 @@ impl NodeView<'_> {
     /// The nearest point of the surface of a tool to a node with its centre at `x`, m. None where a circle
     /// lies flat or is deepest below a ridge, and where an edge crosses none of the tool.
     pub fn nearest(&self, i: usize, x: DVec3, tool: &RigidBody) -> Option<SurfacePoint> {
-        if let Some(crossing) = self.crossing(i, x, tool) {
-            return Some(crossing?.at);
-        }
         match self.node(i) {
             Some(node) => self.pose(x, tool).nearest(node, &*tool.surface),
             None => Some(tool.surface.closest(tool.reference(x))),
@@ -127,11 +124,6 @@ impl NodeView<'_> {
         }
     }
 
-    /// Whether a node is an edge, which touches where it crosses another one.
-    pub fn crosses(&self, i: usize) -> bool {
-        self.node(i).is_some_and(|node| matches!(node.round, Round::Edge(_)))
-    }
-
     /// How a tool sees a node with its centre at `x`, m.
     pub fn pose(&self, x: DVec3, tool: &RigidBody) -> NodePose {
         let rotation = match self {
@@ -144,11 +136,7 @@ impl NodeView<'_> {
     /// Where the edge with its middle at `x` crosses one of a tool, if it comes so near that this counts, and
     /// if the node is an edge.
     pub fn crossing(&self, i: usize, x: DVec3, tool: &RigidBody) -> Option<Option<Crossing>> {
-        let Self::Rigid(body) = self else { return None };
-        let Round::Edge(half) = body.nodes.list()[i].round else { return None };
-        let half = tool.state.rotation.inverse() * (body.state.rotation * half);
-        let middle = tool.reference(x);
-        Some(Crossing::of(&*tool.surface, [middle - half, middle + half], self.size(i)))
+        self.node(i).and_then(|node| self.pose(x, tool).crossing(node, &*tool.surface))
     }
 
     /// Whether the lowest point of a ball is inside of the tool; a tool in the hole of a shell is near its

@@ -19,6 +19,7 @@ mod skin_energy;
 mod skins;
 mod spinning;
 mod thin_tools;
+mod tumbling;
 mod turning;
 mod walls;
 

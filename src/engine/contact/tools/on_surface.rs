@@ -106,11 +106,9 @@ impl OnSurface<'_> {
         let touches = near.overlap > 0.0 && nodes.reaches(i, center, nearest.normal, tool);
         // Where the body of the node has it, a period away from the image that touches.
         touches.then(|| {
-            let share = match (&crossing, nodes.node(i)) {
-                (Some(crossing), _) => Share::of_crossing(crossing, tool),
-                (None, Some(node)) => Share::of_node(node, &nodes.pose(center, tool), &nearest, tool),
-                (None, None) => Share::WHOLE,
-            };
+            let share = nodes
+                .node(i)
+                .map_or(Share::WHOLE, |node| Share::of_node(node, &nodes.pose(center, tool), tool));
             NodeTouch { x: center, shift: own_place - center, point: nearest.point, near, share }
         })
     }
@@ -181,7 +179,7 @@ impl OnSurface<'_> {
         let [along, couple] = share.derivatives(response.spring.energy);
         let (force, heat) = (response.force - along, losses.friction);
         // The gradient is that with the centre of the node, and the force acts at its place.
-        let couple = if nodes.crosses(i) { couple } else { couple + (x - place).cross(along) };
+        let couple = couple + (x - place).cross(along);
         (
             response.history,
             NodePush { arm, place, shift, force, couple: -couple, center: x, turning, heat, stiffness },

@@ -1,33 +1,32 @@
-//! The weight of a node: of a point near the edge of the face that it touches, and of an edge that crosses
-//! another one.
+//! The weight of a node of a rigid body on the surface of another.
 //!
 //! All points of a face or of an edge that lies on a face are in contact. As a body slides over the points of
 //! another one, they enter below its face at an edge, already at the depth of the overlap: a spring that
 //! began there would have spurious energy, and a frictionless box that bounced on another one gained a
-//! quarter of its energy in two seconds. So the energy of such a point is `w u(d)`, where w grows from zero
-//! at the edge of the other face to one at a distance D from it,
+//! quarter of its energy in two seconds. So the energy of a point x is `w u(d)`, where w is the difference of
+//! its depths below the two nearest faces, over a length D:
 //!
 //! ```text
-//! w = -s(p - D n) / D,      D = 0.4 of the length that the point stands for
+//! w = (s(x) - s(x - D n)) / D,      D = 0.4 of the length that the point stands for
 //! ```
 //!
-//! with the nearest point p of the surface, its normal n, and the signed distance s. Along the face the force
-//! is `-u grad w`, a share d/(2 D) of the normal force at most. A point x of an edge has the difference of
-//! the depths of x below the two nearest faces, over D:
-//!
-//! ```text
-//! w = (s(x) - s(x - D n)) / D
-//! ```
-//!
-//! which is zero below the ridge between them, where the edge itself takes over.
+//! with the signed distance s and the normal n at x. It is zero below the ridge of a right edge, where edges
+//! that cross take over; below a ridge at which the normal turns by less, it is the cosine of that angle from
+//! both sides. The deepest point of a circle has the same weight. A face that stands across the other one has
+//! none, and all of it where it is inclined to that by less than 66 degrees; edges that cross have that of
+//! their [`Crossing`](crate::contact::bodies::Crossing).
 //!
 //! Points of edges and corners of a body come on top of those of its faces, which stand for their whole area
 //! already: while a face lies on another one they have a fifth of their weight, and all of it when the body
 //! stands on the edge.
+//!
+//! All of these change as the bodies move and turn: where a surface is round its normal turns, and the
+//! deepest point of a circle moves along it. The derivatives are central differences, so that the force is
+//! the gradient of the energy whatever the weight follows.
 
 use glam::DVec3;
 
-use crate::contact::bodies::{Crossing, NodePose, RAMP, share_of_slope};
+use crate::contact::bodies::{NodePose, RAMP, share_of_slope};
 use crate::rigid::{Feature, RigidBody, RigidNode, Round};
 use crate::shapes::{Surface, SurfacePoint};
 
@@ -43,7 +42,7 @@ const STANDING: f64 = 0.005;
 const STEP: f64 = 1e-6;
 
 /// The share w of a node, its gradient, 1/m, and its derivative with a rotation of the body of the node
-/// against the surface about the centre of the node, or the crossing of an edge.
+/// against the surface, about the centre of the node.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Share {
     pub share: f64,
@@ -55,37 +54,30 @@ impl Share {
     /// For nodes that always count.
     pub const WHOLE: Self = Self { share: 1.0, gradient: DVec3::ZERO, turning: DVec3::ZERO };
 
-    /// For a node of a rigid body, whose nearest point of the surface of `tool` is given.
-    pub fn of_node(node: &RigidNode, pose: &NodePose, nearest: &SurfacePoint, tool: &RigidBody) -> Self {
+    /// For a node of a rigid body that is in that pose beside `tool`.
+    pub fn of_node(node: &RigidNode, pose: &NodePose, tool: &RigidBody) -> Self {
         let weight = Weight { node, surface: &*tool.surface };
-        let share = weight.at(pose, nearest);
-        let moved = |way: DVec3, turn: DVec3| {
-            let pose = pose.moved(way, turn);
-            pose.nearest(node, weight.surface).map_or(0.0, |nearest| weight.at(&pose, &nearest))
-        };
-        let slope = |size: f64, of: &dyn Fn(DVec3) -> f64| {
-            let along = |axis: DVec3| (of(size * axis) - of(-size * axis)) / (2.0 * size);
+        let share = weight.at(pose);
+        if share == 0.0 {
+            return Self::default();
+        }
+        let slope = |step: f64, of: &dyn Fn(DVec3) -> f64| {
+            let along = |axis: DVec3| (of(step * axis) - of(-step * axis)) / (2.0 * step);
             tool.state.rotation * DVec3::from_array(DVec3::AXES.map(along))
         };
         Self {
             share,
-            gradient: slope(STEP * node.size, &|way| moved(way, DVec3::ZERO)),
-            turning: slope(STEP, &|turn| moved(DVec3::ZERO, turn)),
+            gradient: slope(STEP * node.size, &|way| weight.at(&pose.moved(way, DVec3::ZERO))),
+            turning: slope(STEP, &|turn| weight.at(&pose.moved(DVec3::ZERO, turn))),
         }
-    }
-
-    /// For an edge.
-    pub fn of_crossing(crossing: &Crossing, tool: &RigidBody) -> Self {
-        let [gradient, turning] = [crossing.gradient, crossing.turning].map(|of| tool.state.rotation * of);
-        Self { share: crossing.share, gradient, turning }
     }
 
     /// u times the two derivatives, N and N m, where the energy w u of a spring is given, J.
     pub fn derivatives(&self, energy: f64) -> [DVec3; 2] {
-        let of = |derivative: DVec3| {
-            if derivative == DVec3::ZERO { DVec3::ZERO } else { energy / self.share * derivative }
-        };
-        [of(self.gradient), of(self.turning)]
+        if self.share == 0.0 {
+            return [DVec3::ZERO; 2];
+        }
+        [self.gradient, self.turning].map(|derivative| energy / self.share * derivative)
     }
 }
 
@@ -96,23 +88,26 @@ struct Weight<'a> {
 }
 
 impl Weight<'_> {
-    /// In a pose, for which the nearest point of the surface is given.
-    fn at(&self, pose: &NodePose, nearest: &SurfacePoint) -> f64 {
+    /// In a pose.
+    fn at(&self, pose: &NodePose) -> f64 {
+        if let Some(crossing) = pose.crossing(self.node, self.surface) {
+            return crossing.map_or(0.0, |crossing| crossing.share);
+        }
+        let Some(nearest) = pose.nearest(self.node, self.surface) else { return 0.0 };
+        let normal = nearest.normal;
         match (self.node.feature, self.node.round) {
             (Feature::Face(own), _) => {
-                share_of_slope(-(pose.turn * own), nearest.normal).0 * self.beside_ridge(nearest)
+                share_of_slope(-(pose.turn * own).dot(normal)) * self.beside_ridge(&nearest)
             }
             (Feature::Edge(edge), _) => {
                 // An edge that stands on the face is in contact at its ends and crossings.
-                let edge = pose.turn * edge;
-                let rising = if nearest.normal.dot(edge) < 0.0 { -edge } else { edge };
-                let lying = 1.0 - share_of_slope(rising, nearest.normal).0;
-                lying * self.beside_ridge(nearest) * self.beside_faces(pose, nearest.normal)
+                let lying = 1.0 - share_of_slope((pose.turn * edge).dot(normal).abs());
+                lying * self.beside_ridge(&nearest) * self.beside_faces(pose, normal)
             }
             (Feature::Corner, Round::Rim(rim)) if !rim.is_ball() => {
-                self.beside_ridge(nearest) * self.beside_faces(pose, nearest.normal)
+                self.beside_ridge(&nearest) * self.beside_faces(pose, normal)
             }
-            (Feature::Corner, _) => self.beside_faces(pose, nearest.normal),
+            (Feature::Corner, _) => self.beside_faces(pose, normal),
         }
     }
 
