@@ -87,8 +87,8 @@ impl Crossing {
         Some(crossing)
     }
 
-    /// Weight of a crossing of faces of these normals that is `from_end`, m, away from an end of the edge along
-    /// the unit vector e; it grows within `ramp`, m.
+    /// Weight of a crossing of faces of these normals that is `from_end`, m, away from an end of the edge
+    /// along the unit vector e; it grows within `ramp`, m.
     fn weight(&self, surface: &dyn Surface, e: DVec3, from_end: f64, normals: [DVec3; 2], ramp: f64) -> f64 {
         let SurfacePoint { point, signed_distance, .. } = self.at;
         // Deeper by `ramp` below both faces.
