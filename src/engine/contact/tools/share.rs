@@ -56,7 +56,7 @@ impl Share {
 
     /// For a node of a rigid body that is in that pose beside `tool`.
     pub fn of_node(node: &RigidNode, pose: &NodePose, tool: &RigidBody) -> Self {
-        let weight = Weight { node, surface: &*tool.surface };
+        let weight = NodeWeight { node, surface: &*tool.surface };
         let share = weight.at(pose);
         if share == 0.0 {
             return Self::default();
@@ -82,12 +82,12 @@ impl Share {
 }
 
 /// The weight of a node on a surface.
-struct Weight<'a> {
+struct NodeWeight<'a> {
     node: &'a RigidNode,
     surface: &'a dyn Surface,
 }
 
-impl Weight<'_> {
+impl NodeWeight<'_> {
     /// In a pose.
     fn at(&self, pose: &NodePose) -> f64 {
         if let Some(crossing) = pose.crossing(self.node, self.surface) {
