@@ -40,6 +40,8 @@ const STANDING: f64 = 0.005;
 
 /// Steps of the differences from which derivatives follow, over the size of a node, and rad.
 const STEP: f64 = 1e-6;
+/// A share that is one but for round-off.
+const WHOLE_FROM: f64 = 1.0 - 1e-12;
 
 /// The share w of a node, its gradient, 1/m, and its derivative with a rotation of the body of the node
 /// against the surface, about the centre of the node.
@@ -58,8 +60,9 @@ impl Share {
     pub fn of_node(node: &RigidNode, pose: &NodePose, tool: &RigidBody) -> Self {
         let weight = NodeWeight { node, surface: &*tool.surface };
         let share = weight.at(pose);
-        if share == 0.0 {
-            return Self::default();
+        // Neither changes near by, but where it begins to.
+        if share == 0.0 || share > WHOLE_FROM {
+            return Self { share, ..Self::default() };
         }
         let slope = |step: f64, of: &dyn Fn(DVec3) -> f64| {
             let along = |axis: DVec3| (of(step * axis) - of(-step * axis)) / (2.0 * step);
