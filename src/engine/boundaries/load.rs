@@ -76,8 +76,7 @@ pub(super) fn apply(
         let functions = law.functions().into_iter().filter(|value| k == 0 || value.depends_on_place());
         functions.for_each(|value| sim.extend(MovingFunction { body, value, place }));
     }
-    let places = parts.iter().flat_map(|part| pulses::some_of(&part.points).map(|place| (part.body, place)));
-    pulses::watch(label, &law.functions(), places, sim);
+    pulses::watch(label, &law.functions(), pulses::places_of(&parts), sim);
     let load = Load { label, law, parts, kinds, forces, next: Vec::new() };
     let mut system = System::new(Stage::External, label, load).on_phases(phases).by_body();
     if turns {

@@ -61,8 +61,7 @@ pub(super) fn prescribe(
     }
     let parts = parts_of(&selection, sim);
     let functions: Vec<Expression> = field.functions().cloned().collect();
-    let places = parts.iter().flat_map(|part| pulses::some_of(&part.points).map(|place| (part.body, place)));
-    pulses::watch(name, &functions, places, sim);
+    pulses::watch(name, &functions, pulses::places_of(&parts), sim);
     let motion = PrescribedMotion { name, kind, field, parts, time_increment };
     sim.prescribe(&selection, motion.field.axes(), prescription(&motion))?;
     let motion = Arc::new(motion);

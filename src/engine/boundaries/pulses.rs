@@ -8,6 +8,7 @@
 
 use glam::DVec3;
 
+use super::part::Part;
 use crate::plugin::{BodyKind, SimBuilder};
 use crate::rigid::change_in_run;
 use crate::scene::Expression;
@@ -67,6 +68,11 @@ pub(super) fn watch(
     let pulses = Pulses { condition, functions: watched, end };
     let label = format!("pulses of {condition}");
     sim.add_system(System::new(Stage::FinalIntegrate, label, pulses).on_phases(phases).by_body());
+}
+
+/// Some places of every part of a condition.
+pub(super) fn places_of(parts: &[Part]) -> impl Iterator<Item = (BodyId, DVec3)> {
+    parts.iter().flat_map(|part| some_of(&part.points).map(|place| (part.body, place)))
 }
 
 /// The first, the middle and the last of some places.

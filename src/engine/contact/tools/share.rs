@@ -60,7 +60,7 @@ impl Share {
     pub fn of_node(node: &RigidNode, pose: &NodePose, tool: &RigidBody) -> Self {
         let weight = NodeWeight { node, surface: &*tool.surface };
         let share = weight.at(pose);
-        // Neither changes near by, but where it begins to.
+        // A clamped weight does not change.
         if share == 0.0 || share > WHOLE_FROM {
             return Self { share, ..Self::default() };
         }
