@@ -75,3 +75,49 @@ fn cylinders_and_tubes_that_collide_keep_energy_and_momenta() {
         assert!(error.abs() < 1e-2, "{number}: {error}");
     }
 }
+
+/// Polygons with obtuse edges, in elastic contact with friction. Below such an edge the weight of a point of
+/// the other body jumped from what one face gives it to what the other one does: the balance was off by 3.9,
+/// 4.7, 1.1 and 1.2 % of the energy.
+const POLYGONS: [[&str; 2]; 4] = [
+    [
+        "shape: Polygon(points:[(0.34742595, 0.17228826), (0.12458071, 0.41573063), (-0.28420135, 0.29894804), (-0.22598971, -0.2022558), (0.18488523, -0.23092331)]), spacing: 0.03, velocity: (4, 0), formulation: Rigid(spin: (0, 0, 3.598))",
+        "shape: Polygon(points:[(1.177219, -0.012016636), (1.1978916, 0.2306577), (0.93302591, 0.48837082), (0.64614672, 0.43479749), (0.49071277, 0.16071827), (0.5818309, -0.10210205), (0.94197823, -0.20997606)]), spacing: 0.03, velocity: (-4, 0), formulation: Rigid(spin: (0, 0, -5.501))",
+    ],
+    [
+        "shape: Polygon(points:[(0.18527862, 0.22816322), (-0.35764181, -0.039360146), (0.12227356, -0.41909698)]), spacing: 0.03, velocity: (4, 0), formulation: Rigid(spin: (0, 0, -7.977))",
+        "shape: Polygon(points:[(0.93491241, -0.45322566), (1.1601508, -0.28615736), (1.1816582, 0.036627075), (0.91394907, 0.25089162), (0.59628006, 0.15201118), (0.49015913, -0.11408571), (0.59756792, -0.3600502)]), spacing: 0.03, velocity: (-4, 0), formulation: Rigid(spin: (0, 0, 0.452))",
+    ],
+    [
+        "shape: Polygon(points:[(-0.16561679, 0.17233229), (-0.34770691, -0.05403653), (-0.26700782, -0.38877787), (-0.00088606701, -0.50730873), (0.26487601, -0.39111446), (0.34170514, -0.034006699), (0.082777332, 0.20304417)]), spacing: 0.03, velocity: (4, 0), formulation: Rigid(spin: (0, 0, 4.799))",
+        "shape: Polygon(points:[(1.0418747, -0.13682536), (1.2047326, 0.10642198), (1.0319028, 0.47844229), (0.55082039, 0.36800827), (0.52694647, 0.0089197682)]), spacing: 0.03, velocity: (-4, 0), formulation: Rigid(spin: (0, 0, -0.076))",
+    ],
+    [
+        "shape: Polygon(points:[(0.15150801, -0.29464551), (0.35993066, 0.024854875), (0.19173551, 0.33661291), (-0.19943745, 0.33162815), (-0.35929586, 0.054425689), (-0.17810867, -0.28093304)]), spacing: 0.03, velocity: (4, 0), formulation: Rigid(spin: (0, 0, -7.566))",
+        "shape: Polygon(points:[(1.1990653, 0.0034351392), (1.1453725, 0.2972924), (0.88924534, 0.44934327), (0.5628964, 0.30867889), (0.51374586, -0.03709249), (0.65283576, -0.20971918), (0.99689752, -0.23717684)]), spacing: 0.03, velocity: (-4, 0), formulation: Rigid(spin: (0, 0, -2.485))",
+    ],
+];
+
+#[test]
+fn polygons_that_collide_keep_energy_and_momenta() {
+    for (number, [first, second]) in POLYGONS.iter().enumerate() {
+        let mut sim = simulation(&format!(
+            r#"(dimension: Two,
+                materials: {{"m": NeoHookean(density: 1000, young: 1e8, poisson: 0.3)}},
+                bodies: [
+                    (name: "first", material: "m", {first}),
+                    (name: "second", material: "m", {second}),
+                ],
+                contacts: [Contact(between: ("first", "second"), friction: 0.4, restitution: 1)],
+                time: (end: 0.15, step: Adaptive(factor: 1)))"#
+        ));
+        let start = momenta(&sim);
+        sim.run(|_| true).expect("it runs");
+        let (end, error) = (momenta(&sim), sim.ledger().relative_error());
+        // The spins make the scale: the two move towards each other.
+        let scale = start.1.length();
+        assert!((end.0 - start.0).length() < 1e-9 * scale, "{number}");
+        assert!((end.1 - start.1).length() < 1e-9 * scale, "{number}");
+        assert!(error.abs() < 7e-3, "{number}: {error}");
+    }
+}

@@ -87,11 +87,15 @@ impl OnSurface<'_> {
             near.scale = crossing.scale;
         }
         let is_far = near.overlap <= -NEAR * near.scale * nodes.size(i);
-        if is_far
-            || !nodes.is_there(i)
-            || !nodes.faces(i, normal)
-            || nodes.leaves_to(i, tool, nearest.point, self.sides.turn)
-        {
+        if is_far || !nodes.is_there(i) || nodes.leaves_to(i, tool, nearest.point, self.sides.turn) {
+            return None;
+        }
+        let touches = near.overlap > 0.0 && nodes.reaches(i, center, nearest.normal, tool);
+        let share = match nodes.node(i) {
+            Some(node) if touches => Share::of_node(node, &nodes.pose(center, tool), tool),
+            _ => Share::WHOLE,
+        };
+        if !nodes.faces(i, normal) && (!touches || share.is_zero()) {
             return None;
         }
         let held = nodes.is_held(i).then_some(i);
@@ -103,14 +107,9 @@ impl OnSurface<'_> {
             massless,
             landing,
         });
-        let touches = near.overlap > 0.0 && nodes.reaches(i, center, nearest.normal, tool);
         // Where the body of the node has it, a period away from the image that touches.
-        touches.then(|| {
-            let share = nodes
-                .node(i)
-                .map_or(Share::WHOLE, |node| Share::of_node(node, &nodes.pose(center, tool), tool));
-            NodeTouch { x: center, shift: own_place - center, point: nearest.point, near, share }
-        })
+        let shift = own_place - center;
+        touches.then_some(NodeTouch { x: center, shift, point: nearest.point, near, share })
     }
 
     /// How a node that nothing moves but the body that it is a point of, or conditions, moves against the

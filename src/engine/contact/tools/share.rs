@@ -12,9 +12,10 @@
 //!
 //! with the signed distance s and the normal n at x. It is zero below the ridge of a right edge, where edges
 //! that cross take over; below a ridge at which the normal turns by less, it is the cosine of that angle from
-//! both sides. The deepest point of a circle has the same weight. A face that stands across the other one has
-//! none, and all of it where it is inclined to that by less than 66 degrees; edges that cross have that of
-//! their [`Crossing`](crate::contact::bodies::Crossing).
+//! both sides, and what depends on the normal is a mean of both faces. The deepest point of a circle has the
+//! same weight. A face that stands across the other one has none, and all of it where it is inclined to that
+//! by less than 66 degrees; edges that cross have that of their
+//! [`Crossing`](crate::contact::bodies::Crossing).
 //!
 //! Points of edges and corners of a body come on top of those of its faces, which stand for their whole area
 //! already: while a face lies on another one they have a fifth of their weight, and all of it when the body
@@ -75,12 +76,51 @@ impl Share {
         }
     }
 
+    /// Whether the node does not count.
+    pub fn is_zero(&self) -> bool {
+        self.share == 0.0
+    }
+
     /// u times the two derivatives, N and N m, where the energy w u of a spring is given, J.
     pub fn derivatives(&self, energy: f64) -> [DVec3; 2] {
-        if self.share == 0.0 {
+        if self.is_zero() {
             return [DVec3::ZERO; 2];
         }
         [self.gradient, self.turning].map(|derivative| energy / self.share * derivative)
+    }
+}
+
+/// A point beside the ridge between two faces, such as the deepest one of a circle.
+struct Ridge {
+    /// Difference of the depths below both, over a length: the weight of the point.
+    share: f64,
+    /// Cosine of the angle between the normals: the share where both faces are as near.
+    cosine: f64,
+    /// Normals of the nearest face and of the other one.
+    normals: [DVec3; 2],
+}
+
+impl Ridge {
+    /// A mean of a function of the normal: half and half where both faces are as near, that of the nearest
+    /// one from a share of `cosine + range` on.
+    fn mean(&self, range: f64, of: impl Fn(DVec3) -> f64) -> f64 {
+        let [nearest, other] = self.normals;
+        let beyond = self.share - self.cosine;
+        if beyond >= range {
+            return of(nearest);
+        }
+        let of_nearest = 0.5 * (1.0 + (beyond / range).max(0.0));
+        of_nearest * of(nearest) + (1.0 - of_nearest) * of(other)
+    }
+
+    /// The mean over all of the length.
+    fn wide_mean(&self, of: impl Fn(DVec3) -> f64) -> f64 {
+        self.mean(1.0 - self.cosine, of)
+    }
+
+    /// The mean, times the share: its range is the narrower the less is there at the ridge to be evened out.
+    fn shared(&self, of: impl Fn(DVec3) -> f64) -> f64 {
+        self.share * self.mean(self.cosine.min(1.0 - self.cosine), of)
     }
 }
 
@@ -97,30 +137,34 @@ impl NodeWeight<'_> {
             return crossing.map_or(0.0, |crossing| crossing.share);
         }
         let Some(nearest) = pose.nearest(self.node, self.surface) else { return 0.0 };
-        let normal = nearest.normal;
+        let ridge = self.beside_ridge(&nearest);
         match (self.node.feature, self.node.round) {
             (Feature::Face(own), _) => {
-                share_of_slope(-(pose.turn * own).dot(normal)) * self.beside_ridge(&nearest)
+                let own = pose.turn * own;
+                ridge.shared(|normal| share_of_slope(-own.dot(normal)))
             }
             (Feature::Edge(edge), _) => {
                 // An edge that stands on the face is in contact at its ends and crossings.
-                let lying = 1.0 - share_of_slope((pose.turn * edge).dot(normal).abs());
-                lying * self.beside_ridge(&nearest) * self.beside_faces(pose, normal)
+                let edge = pose.turn * edge;
+                let lying = |normal: DVec3| 1.0 - share_of_slope(edge.dot(normal).abs());
+                ridge.shared(|normal| lying(normal) * self.beside_faces(pose, normal))
             }
             (Feature::Corner, Round::Rim(rim)) if !rim.is_ball() => {
-                self.beside_ridge(&nearest) * self.beside_faces(pose, normal)
+                ridge.shared(|normal| self.beside_faces(pose, normal))
             }
-            (Feature::Corner, _) => self.beside_faces(pose, normal),
+            (Feature::Corner, _) => ridge.wide_mean(|normal| self.beside_faces(pose, normal)),
         }
     }
 
-    /// Of a point that may be below the ridge between two faces, such as the deepest one of a circle: zero
-    /// where another face is as near.
-    fn beside_ridge(&self, nearest: &SurfacePoint) -> f64 {
+    fn beside_ridge(&self, nearest: &SurfacePoint) -> Ridge {
         let SurfacePoint { point, normal, signed_distance } = *nearest;
         let depth = RAMP * self.node.size;
         let below = self.surface.closest(point + (signed_distance - depth) * normal);
-        ((signed_distance - below.signed_distance) / depth).clamp(0.0, 1.0)
+        Ridge {
+            share: ((signed_distance - below.signed_distance) / depth).clamp(0.0, 1.0),
+            cosine: normal.dot(below.normal).clamp(0.0, 1.0),
+            normals: [normal, below.normal],
+        }
     }
 
     /// Of a point where faces end, on a surface of that normal.
