@@ -10,7 +10,7 @@ use glam::DVec3;
 
 use super::part::Part;
 use crate::plugin::{BodyKind, SimBuilder};
-use crate::rigid::change_in_run;
+use crate::rigid::{SHORTEST_FOLLOWED, change_in_run, looked_ahead};
 use crate::scene::Expression;
 use crate::schedule::{Run, Stage, Step, StepError, System};
 use crate::world::{BodyId, BodySet};
@@ -19,10 +19,6 @@ use crate::world::{BodyId, BodySet};
 const STEPS: f64 = 16.0;
 /// Share of its change in the whole run by which a function turns back.
 const SHARE: f64 = 0.25;
-/// Shortest step, over the duration of the run.
-const SHORTEST: f64 = 1e-7;
-/// Factor by which steps may grow at once: so far ahead is looked.
-const GROWTH: f64 = 1024.0;
 
 /// A function of time at a place of a body.
 struct Watched {
@@ -84,7 +80,7 @@ pub(super) fn some_of<T: Copy>(places: &[T]) -> impl Iterator<Item = T> {
 impl Run for Pulses {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let t = step.clock.end();
-        let ahead = if step.clock.dt > 0.0 { GROWTH * step.clock.dt } else { self.end };
+        let ahead = looked_ahead(&step.clock);
         for function in &self.functions {
             if !step.part.is_due(step.world, function.body) {
                 continue;
@@ -95,7 +91,9 @@ impl Run for Pulses {
                 dt *= 0.5;
             }
             let longest = dt;
-            while dt > SHORTEST * self.end && function.turns_back([t, (t + STEPS * dt).min(self.end)]) {
+            while dt > SHORTEST_FOLLOWED * self.end
+                && function.turns_back([t, (t + STEPS * dt).min(self.end)])
+            {
                 dt *= 0.5;
             }
             if dt < longest {

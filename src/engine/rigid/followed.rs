@@ -6,7 +6,7 @@
 use glam::DVec3;
 
 use crate::scene::Expression;
-use crate::schedule::Step;
+use crate::schedule::{Clock, Step};
 use crate::world::BodyId;
 
 /// A function of time in a load on a rigid body or in its prescribed motion; conditions add it with
@@ -24,11 +24,16 @@ pub struct MovingFunction {
 const CHANGE: f64 = 1.0 / 16.0;
 /// Times of a run at which the change in the whole run is looked at.
 const TIMES: u32 = 1024;
-/// Shortest step in which a function is followed, over the duration of the run: a jump is met in a step of
-/// this length.
-const SHORTEST: f64 = 1e-7;
+/// Shortest step in which a function of time is followed, over the duration of the run: a jump is met in a
+/// step of this length.
+pub const SHORTEST_FOLLOWED: f64 = 1e-7;
 /// Factor by which steps may grow: so far ahead is looked.
 const GROWTH: f64 = 1024.0;
+
+/// How far ahead of a step functions of time are looked at, s.
+pub fn looked_ahead(clock: &Clock) -> f64 {
+    if clock.dt > 0.0 { GROWTH * clock.dt } else { f64::INFINITY }
+}
 
 /// The change of a function at a place, m, in a run until `end`, s; in the unit of its value.
 pub fn change_in_run(value: &Expression, place: DVec3, end: f64) -> f64 {
@@ -63,15 +68,14 @@ impl FollowedFunctions {
     /// share. Where bounds of the values are unknown, nothing is proposed.
     pub fn propose(&self, longest: f64, step: &mut Step<'_>) {
         let t = step.clock.end();
-        let ahead = if step.clock.dt > 0.0 { GROWTH * step.clock.dt } else { longest };
         for (function, change) in &self.functions {
             let changes = |dt: f64| {
                 let [low, high] = function.range([t, t + dt]);
                 high - low > *change && (high - low).is_finite()
             };
-            let mut dt = ahead.min(longest);
-            while changes(dt) && dt > SHORTEST * self.end {
-                dt = (0.5 * dt).max(SHORTEST * self.end);
+            let mut dt = longest.min(looked_ahead(&step.clock));
+            while changes(dt) && dt > SHORTEST_FOLLOWED * self.end {
+                dt = (0.5 * dt).max(SHORTEST_FOLLOWED * self.end);
             }
             if dt < longest {
                 let name = &step.world.body(function.body).name;

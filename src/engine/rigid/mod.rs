@@ -17,7 +17,7 @@ mod wrench;
 
 pub use body::{RIGID_BODIES, RigidBodies, RigidBody, RigidState};
 pub use constraint::{Drive, DrivenBody, DrivenRotation, HalvedBody};
-pub use followed::{MovingFunction, change_in_run};
+pub use followed::{MovingFunction, SHORTEST_FOLLOWED, change_in_run, looked_ahead};
 pub(crate) use formulation::checked_axis;
 pub use formulation::{Rigid, Rotation};
 pub(crate) use inertia::sphere_of;
