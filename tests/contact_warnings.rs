@@ -103,3 +103,22 @@ fn a_body_that_rolls_or_bounces_does_not_chatter() {
     assert!(!says_of(0.1, r#"("1 + 10*(y - 0.1)", "-10*x")"#, 0.3));
     assert!(!says_of(0.12, r#"(1, -1)"#, 1.0));
 }
+
+/// A rigid disc without a dashpot that rolls from rest under a sudden weight bounces on its spring, and slips
+/// for a moment each time that it is nearly unloaded. It rolls with two thirds of the acceleration along the
+/// floor all the same.
+#[test]
+fn a_rigid_disc_that_bounces_as_it_rolls_does_not_chatter() {
+    let mut sim = built(
+        r#"(dimension: Two, gravity: (3, -9), materials: {"m": NeoHookean(density: 1000, young: 1e8, poisson: 0.3)},
+        bodies: [
+            (name: "floor", material: "m", shape: HalfSpace(point: (0, 0), normal: (0, 1)), spacing: 0.01, formulation: Rigid()),
+            (name: "disc", material: "m", shape: Sphere(center: (0, 0.1), radius: 0.1), spacing: 0.01, formulation: Rigid()),
+        ],
+        conditions: [Fix(on: Select(body: "floor"))],
+        contacts: [(between: ("disc", "floor"), friction: 0.5)], time: (end: 0.3))"#
+            .to_owned(),
+    );
+    sim.run(|_| true).expect("a run");
+    assert!(!says(&sim, "chatter"), "{:?}", sim.warnings());
+}

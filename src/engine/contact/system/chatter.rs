@@ -9,12 +9,13 @@ use serde::{Deserialize, Serialize};
 
 use crate::contact::response::Sliding;
 use crate::notation::quantity;
+use crate::rigid::is_rigid;
 use crate::schedule::Step;
 use crate::world::BodyId;
 
-/// Steps over which the share of what slides is averaged.
+/// Steps over which the force of what slides is averaged.
 const AVERAGE: f64 = 100.0;
-/// Mean share of what slides, above which a contact slides.
+/// Share of the mean normal force at points that slide, above which a contact slides.
 const SLIDES: f64 = 0.3;
 /// How often a point may stick in a step.
 const RATE: f64 = 1.0 / 500.0;
@@ -24,8 +25,11 @@ const TIMES: f64 = 20.0;
 /// Whether a contact chatters.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Chatter {
-    /// Mean share of what slides.
-    share: f64,
+    /// Mean normal force of all points, N.
+    load: f64,
+    /// That of points that slide, N. A body that bounces slides for a moment each time that it is nearly
+    /// unloaded: that is a large share of the time, and a small one of the force.
+    slides: f64,
     /// How often its points have stuck, beyond what is usual.
     times: f64,
     is_told: bool,
@@ -41,8 +45,10 @@ impl Chatter {
             *self = Self::default();
             return;
         }
-        self.share += (sliding.slides / sliding.load - self.share) / AVERAGE;
-        let stuck = if self.share > SLIDES { sliding.caught / sliding.load } else { 0.0 };
+        self.load += (sliding.load - self.load) / AVERAGE;
+        self.slides += (sliding.slides - self.slides) / AVERAGE;
+        let is_sliding = self.slides > SLIDES * self.load;
+        let stuck = if is_sliding { sliding.caught / sliding.load } else { 0.0 };
         self.times = (self.times + stuck - RATE).max(0.0);
         if self.times < TIMES {
             return;
@@ -54,8 +60,12 @@ impl Chatter {
             [(first, second), (second, first)].map(|(a, b)| format!("bodies `{a}` and `{b}` chatter:"));
         let is_of_both = |told: &String| told.starts_with(&begin) || told.starts_with(&turned);
         if !step.warnings.iter().any(is_of_both) {
+            let damps = match bodies.map(|body| is_rigid(step, body)) {
+                [true, true] => "a `restitution` below 1 damps them",
+                _ => "`artificial_viscosity()` in the plugins of deformable bodies damps them",
+            };
             step.warnings.push(format!(
-                "{begin} until {} points that slide have stuck again {TIMES} times, because friction drives vibrations that nothing damps, and it falls short of its coefficient; `artificial_viscosity()` in the plugins of deformable bodies damps them",
+                "{begin} until {} points that slide have stuck again {TIMES} times, because friction drives vibrations that nothing damps, and it falls short of its coefficient; {damps}",
                 quantity(step.clock.end(), "s")
             ));
         }
