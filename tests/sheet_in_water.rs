@@ -57,7 +57,7 @@ fn a_sheet_that_breathes_with_the_steps_of_the_water_comes_to_rest() {
 /// which work that nothing did was booked: 34 % of the energy at 0.5 MPa.
 #[test]
 fn a_sheet_that_takes_one_step_with_the_water_takes_the_work_that_this_does() {
-    for young in [2e5, 5e5, 8e5] {
+    for young in [2e5, 3.5e5, 5e5] {
         let mut sim = simulation(&Source::new("sheet.ron", scene(young, 0.025, 0.0125)));
         sim.run(|_| true).expect("a run");
         assert_eq!(sim.sub_steps().map(|steps| steps.1), Some(sim.clock().step), "{young}");

@@ -14,6 +14,7 @@ use super::pair_control::{self, PairControl};
 use super::refit::Refits;
 use super::stable_step::{BodyStep, StepEstimate};
 use super::stretches::{self, Resisting};
+use super::thin_body::stiffness_of_thin;
 use crate::materials::{MAX_STATE, SolidLaw, StateColumns, StateRows, Stretches};
 use crate::parallel::{Split, for_each_block, for_each_own_block};
 use crate::plugin::{BodyPlan, ForBodies, Offer, SetupError, SimBuilder};
@@ -415,8 +416,9 @@ impl SolidBody {
         let elastic = law.elastic();
         let density = body.material.density;
         let factor: f64 = terms.iter().map(|&k| all[k].value.term.stiffness_factor()).sum();
+        let thin = stiffness_of_thin(body, elastic, sim.dimension().count(), &sim.periodic());
         let estimate = StepEstimate {
-            wave: elastic.longitudinal_modulus() / density,
+            wave: thin * elastic.longitudinal_modulus() / density,
             bond: factor * elastic.young / density,
             hessian: hessian.map_or(0.0, |HessianDifference { eta, form }| match form {
                 HessianForm::FrameIndifferent => eta * eta * elastic.young / density,

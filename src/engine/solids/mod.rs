@@ -37,6 +37,7 @@ mod row_loops;
 mod stable_step;
 mod stretches;
 mod support;
+mod thin_body;
 
 pub use bodies::{BodyPass, SolidBodies, SolidBody, SolidPart};
 pub use constitutive::{Constitutive, SolidBlock, SolidColumns, SolidRows, SolidSum};

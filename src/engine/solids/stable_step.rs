@@ -5,8 +5,11 @@
 //! where the support is cut by a surface; a bond stiffness k_i = s E_i gives `omega^2 = BOND_FACTOR s E_i
 //! (sum_j V_j w_ij) / rho`. The two constants are upper bounds of the largest eigenvalue of the assembled
 //! linear operator of free square and cubic blocks, regular and irregular, for spiky and Wendland kernels
-//! with supports of 2 to 3 spacings; tests/stable_step.rs of the hourglass plugin compares with the largest
-//! frequency of a naive second implementation.
+//! with supports of 2 to 3 spacings, three particles and more across (thinner bodies: [`thin_body`]);
+//! tests/stable_step.rs of the hourglass plugin compares with the largest frequency of a naive second
+//! implementation.
+//!
+//! [`thin_body`]: super::thin_body
 
 use serde::{Deserialize, Serialize};
 
@@ -59,7 +62,7 @@ impl Default for BodyStep {
 /// Quantities that determine the stable step of a particle.
 #[derive(Clone, Copy, Debug)]
 pub struct StepEstimate {
-    /// Squared speed of longitudinal waves c_l^2, m2/s2.
+    /// Squared speed of longitudinal waves c_l^2, m2/s2; more in a body that is too thin for the estimate.
     pub wave: f64,
     /// Sum of the stiffness factors of all bond terms times E / rho, m2/s2.
     pub bond: f64,
@@ -69,6 +72,11 @@ pub struct StepEstimate {
 }
 
 impl StepEstimate {
+    /// Square of the frequency that stress gives a particle, 1/s2, from the same sums as the stable step.
+    pub(super) fn of_stress(&self, weight_sum: f64, mean_inverse: f64) -> f64 {
+        STRESS_FACTOR * self.wave * weight_sum * mean_inverse
+    }
+
     /// Stable step, s; `weight_sum` is sum_j V_j w_ij, `mean_inverse` is trace(M_i^-1) / d.
     pub fn stable_step(&self, weight_sum: f64, mean_inverse: f64) -> f64 {
         self.stable_step_with(weight_sum, mean_inverse, 0.0)
@@ -78,7 +86,7 @@ impl StepEstimate {
     /// over lengths squared: the sum of the sizes of its coefficients times the smoothing length.
     pub fn stable_step_with(&self, weight_sum: f64, mean_inverse: f64, second: f64) -> f64 {
         let hessian = HESSIAN_FACTOR * self.hessian * second * second;
-        let stress = STRESS_FACTOR * self.wave * weight_sum * mean_inverse;
+        let stress = self.of_stress(weight_sum, mean_inverse);
         let bond = BOND_FACTOR * self.bond * weight_sum;
         // Between the larger of the two (they peak at different wave numbers) and their sum.
         let omega_squared = stress.hypot(bond).hypot(hessian);
@@ -88,7 +96,7 @@ impl StepEstimate {
     /// Stable step, s, where control along pairs gives a particle the stiffness `pairs` over its mass, 1/s2:
     /// the sum of those of its pairs.
     pub fn stable_step_with_pairs(&self, weight_sum: f64, mean_inverse: f64, pairs: f64) -> f64 {
-        let stress = STRESS_FACTOR * self.wave * weight_sum * mean_inverse;
+        let stress = self.of_stress(weight_sum, mean_inverse);
         SAFETY * 2.0 / stress.hypot(PAIR_FACTOR * pairs).sqrt()
     }
 

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use crate::formulations::fluid::lanes::FluidKernel;
-use crate::formulations::fluid::walls::RangeShortfall;
+use crate::formulations::fluid::walls::{BeforeSphere, RangeShortfall};
 use crate::kernels::KernelName;
 use crate::notation::number;
 use crate::plugin::{BodyKind, Formulation, Offer, SetupError, SimBuilder};
@@ -51,6 +51,7 @@ impl Formulation for Fluid {
 
     fn columns(columns: &mut ColumnSet) {
         columns.add::<Density>().add::<DensityRate>().add::<Pressure>().add::<RangeShortfall>();
+        columns.add::<BeforeSphere>();
     }
 
     fn assemble(bodies: Vec<(BodyId, Self)>, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {

@@ -13,8 +13,8 @@ use crate::formulations::fluid::passes::{Compression, FLUID_FORCE, FlowForce, re
 use crate::formulations::fluid::rotation::Spin;
 use crate::formulations::fluid::setup::advice;
 use crate::formulations::fluid::walls::{
-    EdgeForces, EdgeMotion, GapPressure, PreviousVelocity, RangeShortfall, Repulsion, SeenMotions,
-    WallCompression, WallEnds, WallShapes, WallState,
+    BeforeSphere, EdgeForces, EdgeMotion, GapPressure, PreviousVelocity, RangeShortfall, Repulsion,
+    SeenMotions, WallCompression, WallEnds, WallShapes, WallState,
 };
 use crate::formulations::fluid::warnings::watch;
 use crate::pair::{BodyTerms, PhaseTerms, add_work_systems};
@@ -104,6 +104,7 @@ pub fn add(
             .touches_packed(REPELLED, Mode::Writes)
             .reads_near::<ReferencePosition>()
             .writes::<RangeShortfall>()
+            .writes::<BeforeSphere>()
             .after(COMPRESSION);
         sim.add_system(noticing_failure(system, groups, sim));
     }

@@ -11,8 +11,12 @@ pub struct Repelled {
     pub i: usize,
     /// First row of the boundary in the cloud.
     pub boundary: usize,
-    /// Distance from its shape, m.
+    /// Distance from its shape, or from the sphere of a particle of it, m.
     pub distance: f64,
+    /// Whether it is that from a sphere; not exchanged.
+    pub is_before_sphere: bool,
+    /// The other one of the two, infinite where it is not known, m; not exchanged.
+    pub other_distance: f64,
     /// Force on the particle, N; before that is known, over `l_i - d`, N/m.
     pub force: DVec3,
     /// Distribution of the opposite force to the particles of the boundary.
@@ -71,7 +75,8 @@ impl Repelled {
     }
 
     fn to_words(self) -> [u64; WORDS] {
-        let Self { i, boundary, distance, force, shares: Shares { total, mean, slope, carrier } } = self;
+        let Self { i, boundary, distance, force, shares, .. } = self;
+        let Shares { total, mean, slope, carrier } = shares;
         let numbers =
             [distance, total].into_iter().chain([force, mean, slope].into_iter().flat_map(|v| v.to_array()));
         let [kind, row] = carrier.to_words();
@@ -94,6 +99,7 @@ impl Repelled {
             distance: number(4),
             force: vector(6),
             shares,
+            ..Self::default()
         }
     }
 }
@@ -111,8 +117,14 @@ mod tests {
                 slope: DVec3::new(-0.0, 5.0, 6.0),
                 carrier,
             };
-            let repelled =
-                Repelled { i: 3, boundary: 90, distance: 1e-3, force: DVec3::new(7.0, 8.0, 9.0), shares };
+            let repelled = Repelled {
+                i: 3,
+                boundary: 90,
+                distance: 1e-3,
+                force: DVec3::new(7.0, 8.0, 9.0),
+                shares,
+                ..Repelled::default()
+            };
             let back = Repelled::of_words(&repelled.to_words());
             assert_eq!(format!("{back:?}"), format!("{repelled:?}"));
         }

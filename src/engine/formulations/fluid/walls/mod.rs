@@ -30,7 +30,7 @@ pub use edges::{EdgeForces, EdgeMotion, WallShapes};
 pub use ends::WallEnds;
 pub use gaps::GapPressure;
 pub use own_motion::SeenMotions;
-pub use repulsion::{RangeShortfall, Repulsion};
+pub use repulsion::{BeforeSphere, RangeShortfall, Repulsion};
 pub use surface_distance::apart;
 pub use wall::{PreviousVelocity, Slip, Wall, WallBody, has_suction};
 pub use wall_compression::WallCompression;

@@ -9,9 +9,9 @@
 //! of the inverse masses; that of a wall is zero.
 //!
 //! Particles of a fluid at rest stand half a spacing before a wall. Those that start nearer than the range,
-//! where lattices do not fit shapes, lack s_i of it, which falls as soon as they have been farther away and
-//! never rises, so that it changes no energy. So do those beside a body as its particles become spheres,
-//! because some have failed.
+//! where lattices do not fit shapes, lack s_i of it, which falls as soon as they have been farther away, so
+//! that it changes no energy. It rises only where the distance jumps, because it is now measured from the
+//! sphere of a particle of the body, or no longer is: `l_i - d` stays what it was.
 //!
 //! This energy does not change when fluid and body move together, so that the opposite force acts on the body
 //! at the place of the fluid particle. The particles of the body around that carry it by shares whose centre
@@ -33,6 +33,11 @@ crate::column! {
     /// Shortfall of the range of the repulsion of boundaries for a fluid particle.
     pub struct RangeShortfall(f64) = "range_shortfall", "s", "m";
 }
+crate::column! {
+    /// Whether a fluid particle was last before the sphere of a particle of a boundary: 1 there, 0 before a
+    /// shape.
+    pub struct BeforeSphere(f64) = "before_sphere", "", "-";
+}
 
 /// Range of the repulsion over the spacing of the fluid.
 const RANGE: f64 = 0.15;
@@ -47,10 +52,8 @@ pub struct Repulsion {
     range: f64,
     /// Particles near boundaries, as rows of the cloud.
     close: Vec<u32>,
-    /// Whether a particle may lack of its range.
+    /// Whether a particle may lack of its range or be before a sphere.
     is_short: bool,
-    /// Boundaries whose particles have become spheres in this step, by their first rows in the cloud.
-    broken: Vec<usize>,
 }
 
 impl Repulsion {
@@ -77,18 +80,15 @@ impl Repulsion {
             widest = f64::max(widest, reach);
             surfaces.push(BoundaryShape::of_any(group, stiffness, reach, sim));
         }
-        (Self { surfaces, range, close: Vec::new(), is_short: true, broken: Vec::new() }, widest)
+        (Self { surfaces, range, close: Vec::new(), is_short: true }, widest)
     }
 
     /// Writes down how near particles are to the nearest boundary, and the direction of the repulsion of
     /// those within its range.
     fn measure(&mut self, cloud: &FlowCloud, out: &mut [Repelled], step: &Step<'_>) -> Result<(), StepError> {
         let (range, close) = (self.range, &self.close[..]);
-        self.broken.clear();
         for surface in &mut self.surfaces {
-            if surface.notice_failure(step)? {
-                self.broken.push(surface.group.cloud.start);
-            }
+            surface.notice_failure(step)?;
             surface.look(cloud, step, |seen| {
                 let (surface, rows) = (seen.shape, (&mut out[..], close));
                 for_each_block(rows, &mut Vec::new(), &|_, (out, close): (&mut [Repelled], &[u32])| {
@@ -104,6 +104,8 @@ impl Repulsion {
                         let fluid = cloud.groups.iter().position(|group| group.cloud.contains(&i));
                         let stiffness = fluid.map_or(0.0, |fluid| surface.stiffness[fluid]);
                         out.distance = place.distance;
+                        out.is_before_sphere = place.is_beside_particle();
+                        out.other_distance = place.other_distance;
                         out.boundary = surface.group.cloud.start;
                         if place.distance < range {
                             out.force = stiffness * surface.direction(cloud, &place);
@@ -126,21 +128,36 @@ impl Repulsion {
         let is_start = step.clock.step == 0 && step.clock.dt == 0.0;
         let mut is_short = false;
         for group in cloud.groups.iter().filter(|group| group.fluid().is_some()) {
-            let mut column = step.world.phase(group.phase).write_own::<RangeShortfall>()?;
+            let view = step.world.phase(group.phase);
+            let mut column = view.write_own::<RangeShortfall>()?;
             let shortfall = &mut column[group.rows.clone()];
+            let mut column = view.write_own::<BeforeSphere>()?;
+            let before_sphere = &mut column[group.rows.clone()];
             // Rows may have been another rank's before.
             if self.is_short || has_several() {
                 let own = own_rows(&(0..group.rows.len()));
-                let far = shortfall[own.clone()].iter_mut().zip(&cloud.is_close[group.cloud.clone()][own]);
-                far.filter(|(_, close)| **close == 0).for_each(|(short, _)| short.0 = 0.0);
+                let close = &cloud.is_close[group.cloud.clone()][own.clone()];
+                let rows = shortfall[own.clone()].iter_mut().zip(&mut before_sphere[own]);
+                let far = rows.zip(close).filter(|(_, close)| **close == 0);
+                far.for_each(|((short, sphere), _)| (short.0, sphere.0) = (0.0, 0.0));
             }
             for repelled in out.iter_mut().filter(|repelled| group.cloud.contains(&repelled.i)) {
-                let short = &mut shortfall[repelled.i - group.cloud.start].0;
-                let within = (self.range - repelled.distance).max(0.0);
-                let is_new = is_start || self.broken.contains(&repelled.boundary);
-                *short = if is_new { within } else { short.min(within) };
+                let row = repelled.i - group.cloud.start;
+                let short = &mut shortfall[row].0;
+                let sphere = f64::from(repelled.is_before_sphere);
+                let jumps = std::mem::replace(&mut before_sphere[row].0, sphere) != sphere;
+                let overlap = |distance: f64| (self.range - distance).max(0.0);
+                let within = overlap(repelled.distance);
+                *short = if is_start {
+                    within
+                } else if jumps {
+                    let before = (overlap(repelled.other_distance) - *short).max(0.0);
+                    (within - before).max(0.0)
+                } else {
+                    short.min(within)
+                };
                 repelled.force *= within - *short;
-                is_short |= *short > 0.0;
+                is_short |= *short > 0.0 || repelled.is_before_sphere;
             }
         }
         self.is_short = is_short;

@@ -62,8 +62,10 @@ pub struct BoundaryShape {
 pub struct PlaceInBody {
     /// Where it is there, m; beside one particle alone, the direction away from that.
     at: DVec3,
-    /// Distance from the shape, negative inside of it, m.
+    /// Distance from the shape, negative inside of it, or from the sphere of one particle, m.
     pub distance: f64,
+    /// The other one of these two distances, infinite where the shape is not known, m.
+    pub other_distance: f64,
     /// Gradient of the place in the body with respect to that in space.
     map: DMat3,
     /// Shares of the particles around it in what acts on it.
@@ -72,7 +74,7 @@ pub struct PlaceInBody {
 
 impl PlaceInBody {
     /// Whether the distance is that from one particle.
-    fn is_beside_particle(&self) -> bool {
+    pub fn is_beside_particle(&self) -> bool {
         matches!(self.shares.carrier, LoadCarrier::Particle(_))
     }
 }
@@ -171,10 +173,10 @@ impl BoundaryShape {
         motion
     }
 
-    /// Makes spheres of the particles of a body of which some have failed; returns whether it did so now.
-    pub fn notice_failure(&mut self, step: &Step<'_>) -> Result<bool, StepError> {
+    /// Makes spheres of the particles of a body of which some have failed.
+    pub fn notice_failure(&mut self, step: &Step<'_>) -> Result<(), StepError> {
         if !self.can_fail || self.is_made_of_spheres {
-            return Ok(false);
+            return Ok(());
         }
         let view = step.world.phase(self.group.phase);
         let damage = view.read_own::<Damage>()?;
@@ -182,7 +184,7 @@ impl BoundaryShape {
             damage.iter().filter(|damage| damage.0 >= 1.0).count() as f64
         });
         self.is_made_of_spheres = failed > 0.0;
-        Ok(self.is_made_of_spheres)
+        Ok(())
     }
 
     /// In a step in which the body is not looked at.
@@ -209,16 +211,10 @@ impl BoundaryShape {
         let from = cloud.records[i].position();
         let offset = |j: u32| cloud.offset(from, cloud.records[j as usize].position());
         let weight = |j: u32| cloud.records[j as usize].volume() * cloud.kernel.value(offset(j).length());
-        let nearest = row
-            .iter()
-            .copied()
-            .filter(|&j| weight(j) > 0.0)
-            .min_by(|a, b| offset(*a).length_squared().total_cmp(&offset(*b).length_squared()))?;
-        if offset(nearest).length() > self.reach {
-            return None;
-        }
+        let weighing = row.iter().copied().filter(|&j| weight(j) > 0.0);
+        let (nearest, away) = self.nearest(weighing.map(|j| (j, offset(j))))?;
         if self.is_made_of_spheres {
-            return Some(self.beside(cloud, nearest, offset(nearest)));
+            return Some(self.beside(cloud, nearest, away, f64::INFINITY));
         }
         let origin = reference[nearest as usize - self.group.cloud.start].0;
         let home = |j: u32| apart(cloud, &self.group, reference, from, [nearest, j])[1];
@@ -242,18 +238,31 @@ impl BoundaryShape {
         }
         let powers = if cloud.plane { 4 } else { 6 };
         let is_regular = moment.determinant() > 1e-6 * self.spacing.powi(powers);
-        let fit = is_regular.then(|| moment.inverse()).filter(|inverse| mean.dot(*inverse * mean) < OUTSIDE);
-        let (map, at) = match (motion, fit) {
-            (Some(motion), _) => (motion.map, origin - motion.map * offset(nearest)),
-            (None, Some(inverse)) => {
-                let map = moved * inverse;
-                (map, origin + mean_home - map * mean)
-            }
-            (None, None) => return Some(self.beside(cloud, nearest, offset(nearest))),
+        let any_fit = is_regular.then(|| moment.inverse());
+        let fit = any_fit.filter(|inverse| mean.dot(*inverse * mean) < OUTSIDE);
+        let fitted = |inverse: DMat3| {
+            let map = moved * inverse;
+            (map, origin + mean_home - map * mean)
         };
+        let (map, at) = match (motion, fit) {
+            (Some(motion), _) => (motion.map, origin - motion.map * away),
+            (None, Some(inverse)) => fitted(inverse),
+            (None, None) => {
+                let extrapolated = any_fit.map_or(f64::INFINITY, |any| self.distance(cloud, fitted(any).1));
+                return Some(self.beside(cloud, nearest, away, extrapolated));
+            }
+        };
+        let other_distance = self.distance_from_sphere(cloud, away);
         let slope = -(fit.unwrap_or(DMat3::ZERO) * mean);
         let shares = Shares { total, mean, slope, carrier: self.carrier(fit.is_some(), nearest) };
-        Some(PlaceInBody { at, distance: self.distance(cloud, at), map, shares })
+        Some(PlaceInBody { at, distance: self.distance(cloud, at), other_distance, map, shares })
+    }
+
+    /// The nearest of these particles, if it is within reach, and the vector to it, m.
+    fn nearest(&self, particles: impl Iterator<Item = (u32, DVec3)>) -> Option<(u32, DVec3)> {
+        particles
+            .min_by(|(_, a), (_, b)| a.length_squared().total_cmp(&b.length_squared()))
+            .filter(|(_, away)| away.length() <= self.reach)
     }
 
     /// What carries a force beside the body, where shares of the particles around fit it or not.
@@ -276,11 +285,17 @@ impl BoundaryShape {
         (place.distance < limit).then(|| 1.0 - (place.distance.max(0.0) / limit).powi(2))
     }
 
+    /// Distance from the sphere of a particle that is at `offset` from here, m.
+    fn distance_from_sphere(&self, cloud: &FlowCloud, offset: DVec3) -> f64 {
+        offset.length() - SPHERES[usize::from(!cloud.plane)] * self.spacing
+    }
+
     /// Beside the sphere of one particle, which is at `offset` from here.
-    fn beside(&self, cloud: &FlowCloud, particle: u32, offset: DVec3) -> PlaceInBody {
-        let distance = offset.length() - SPHERES[usize::from(!cloud.plane)] * self.spacing;
+    fn beside(&self, cloud: &FlowCloud, particle: u32, offset: DVec3, from_shape: f64) -> PlaceInBody {
+        let distance = self.distance_from_sphere(cloud, offset);
         let shares = Shares { carrier: LoadCarrier::Particle(particle), ..Shares::default() };
-        PlaceInBody { at: -offset.normalize_or_zero(), distance, map: DMat3::IDENTITY, shares }
+        let at = -offset.normalize_or_zero();
+        PlaceInBody { at, distance, other_distance: from_shape, map: DMat3::IDENTITY, shares }
     }
 
     /// Distance from the shape or from its nearest periodic image, m, exact up to the reach; infinite without
