@@ -1,8 +1,11 @@
 //! Bodies that overlap. Without a contact no two particles of different bodies may start closer than half
-//! their spacing. Bodies with a contact touch with the surfaces of their shapes, whatever their spacings: no
-//! particle of one may start in the shape of the other; where both touch with their particles the first rule
-//! stays. Two rigid bodies are left to their contact, and so are half-spaces beside solids and rigid bodies:
-//! particles that stand for them are in no particular place, and two planes of a groove always overlap.
+//! their spacing. Bodies with a contact touch with the surfaces of their shapes, whatever their spacings:
+//! these may overlap by a quarter of the smaller spacing, as in a shrink fit. How deep particles lie below a
+//! curved side of their own shape is a matter of their lattice, so that their depths in both shapes count.
+//! Where both touch with their particles the first rule stays, and particles of walls may not start in
+//! another shape. Two rigid bodies are left to their contact, and so are half-spaces beside solids and rigid
+//! bodies: particles that stand for them are in no particular place, and two planes of a groove always
+//! overlap.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -14,6 +17,10 @@ use crate::notation::place;
 use crate::plugin::{BodyKind, BodyPlan, contact_pairs};
 use crate::scene::{Contact, ContactSurface, Problem, Scene};
 use crate::shapes::Region;
+
+/// Overlap of surfaces in contact at the start, over the smaller spacing: as deep as the skin of a body may
+/// start in a rigid one.
+const ALLOWED: f64 = 0.25;
 
 /// Distance from a face below which a particle is on it, over the spacing.
 const ON_FACE: f64 = 1e-6;
@@ -57,7 +64,12 @@ pub(super) fn problems(bodies: &[BodyPlan], scene: &Scene, folder: &Path) -> Vec
                 match [first, second].map(|body| body.kind == BodyKind::Rigid) {
                     [true, true] => true,
                     [false, false] if contact.surface == ContactSurface::Particles => false,
-                    _ => shapes.part([pair.0, pair.1], [positions[i], positions[j as usize]]),
+                    _ => {
+                        let least = first.spacing.min(second.spacing);
+                        let allowed = if is_solid(first) && is_solid(second) { ALLOWED * least } else { 0.0 };
+                        let at = [positions[i], positions[j as usize]];
+                        !shapes.overlap_by_more_than(allowed, [pair.0, pair.1], at)
+                    }
                 }
             });
             if is_left {
@@ -110,6 +122,15 @@ impl Shapes<'_> {
         !self.holds(pair[0], at[1]) && !self.holds(pair[1], at[0])
     }
 
+    /// Whether one of two points, one of each body, is in the shape of the other one, and its depths in both
+    /// add up to more than those `allowed`, m.
+    fn overlap_by_more_than(&mut self, allowed: f64, pair: [usize; 2], at: [DVec3; 2]) -> bool {
+        [(0, 1), (1, 0)].into_iter().any(|(own, other)| {
+            let inside = self.depth(pair[other], at[own]);
+            inside > 0.0 && inside + self.depth(pair[own], at[own]).max(0.0) > allowed
+        })
+    }
+
     /// Whether a point is on the surface of both bodies.
     fn share_face(&mut self, pair: [usize; 2], at: DVec3, within: f64) -> bool {
         pair.iter().all(|&body| self.region(body).is_some_and(|region| region.distance(at).abs() < within))
@@ -117,7 +138,12 @@ impl Shapes<'_> {
 
     /// Whether a point is in a body; also where its shape is not known.
     fn holds(&mut self, body: usize, x: DVec3) -> bool {
-        self.region(body).is_none_or(|region| region.distance(x) < 0.0)
+        self.depth(body, x) > 0.0
+    }
+
+    /// How deep a point is in a body, m; any depth where its shape is not known.
+    fn depth(&mut self, body: usize, x: DVec3) -> f64 {
+        self.region(body).map_or(f64::INFINITY, |region| -region.distance(x))
     }
 
     fn region(&mut self, body: usize) -> Option<&dyn Region> {
@@ -145,6 +171,34 @@ mod tests {
         );
         let (scene, source) = parse(Source::new("overlap.ron", &text)).unwrap_or_else(|e| panic!("{e}"));
         build(&scene, &source, &Registry::standard()).err().map(|error| error.to_string())
+    }
+
+    /// Shafts on a regular lattice, whose particles lie at any depth below its side, in a ring of the same
+    /// spacing.
+    #[test]
+    fn a_shrink_fit_of_up_to_a_quarter_of_a_spacing_is_no_error_on_any_lattice() {
+        for shaft in ["Rigid()", "TotalLagrangian"] {
+            let error = |interference: f64| {
+                let text = format!(
+                    r#"(dimension: Two, materials: {{"m": NeoHookean(density: 1000, young: 1e7, poisson: 0.3)}},
+                        bodies: [
+                            (name: "shaft", material: "m", shape: Sphere(center: (0, 0), radius: {:?}), spacing: 0.01, formulation: {shaft}),
+                            (name: "ring", material: "m", shape: Ring(center: (0, 0), inner: 0.1, outer: 0.16), spacing: 0.01, lattice: Concentric, formulation: TotalLagrangian),
+                        ],
+                        contacts: [Contact(between: ("ring", "shaft"))], time: (end: 1))"#,
+                    0.1 + interference
+                );
+                let (scene, source) =
+                    parse(Source::new("overlap.ron", &text)).unwrap_or_else(|e| panic!("{e}"));
+                build(&scene, &source, &Registry::standard()).err().map(|error| error.to_string())
+            };
+            for k in 1..=8 {
+                let interference = 0.0003 * f64::from(k);
+                assert_eq!(error(interference), None, "{shaft}: {interference}");
+            }
+            let deep = error(0.011).unwrap_or_default();
+            assert!(deep.contains("body `ring` overlaps body `shaft`"), "{shaft}: {deep}");
+        }
     }
 
     #[test]
