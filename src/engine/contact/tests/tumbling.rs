@@ -3,6 +3,8 @@
 
 use super::rigid::momenta;
 use super::simulation;
+use crate::rigid::RigidBodies;
+use crate::simulation::Simulation;
 
 /// Two bodies, with spacing and motion, their modulus, Pa, friction and restitution.
 struct Impact {
@@ -53,26 +55,55 @@ const PAIRS: [Impact; 4] = [
     },
 ];
 
+fn pair(
+    Impact { bodies: [first, second], young, friction, restitution }: &Impact,
+    domain: &str,
+) -> Simulation {
+    simulation(&format!(
+        r#"(dimension: Three, {domain}
+            materials: {{"m": NeoHookean(density: 1000, young: {young:?}, poisson: 0.3)}},
+            bodies: [
+                (name: "first", material: "m", shape: {first}),
+                (name: "second", material: "m", shape: {second}),
+            ],
+            contacts: [Contact(between: ("first", "second"), friction: {friction:?}, restitution: {restitution:?})],
+            time: (end: 0.4))"#
+    ))
+}
+
 #[test]
 fn cylinders_and_tubes_that_collide_keep_energy_and_momenta() {
-    for (number, Impact { bodies: [first, second], young, friction, restitution }) in PAIRS.iter().enumerate()
-    {
-        let mut sim = simulation(&format!(
-            r#"(dimension: Three,
-                materials: {{"m": NeoHookean(density: 1000, young: {young:?}, poisson: 0.3)}},
-                bodies: [
-                    (name: "first", material: "m", shape: {first}),
-                    (name: "second", material: "m", shape: {second}),
-                ],
-                contacts: [Contact(between: ("first", "second"), friction: {friction:?}, restitution: {restitution:?})],
-                time: (end: 0.4))"#
-        ));
+    for (number, impact) in PAIRS.iter().enumerate() {
+        let mut sim = pair(impact, "");
         let start = momenta(&sim);
         sim.run(|_| true).expect("it runs");
         let (end, error) = (momenta(&sim), sim.ledger().relative_error());
         assert!((end.0 - start.0).length() < 1e-10 * start.0.length(), "{number}");
         assert!((end.1 - start.1).length() < 1e-10 * start.1.length(), "{number}");
         assert!(error.abs() < 1e-2, "{number}: {error}");
+    }
+}
+
+#[test]
+fn a_collision_across_a_periodic_side_is_that_in_the_middle_of_the_domain() {
+    let after = |low: f64| {
+        let (low, high) = (low, low + 2.0);
+        let mut sim =
+            pair(&PAIRS[0], &format!("domain: (min: ({low}, -1, -1), max: ({high}, 1, 1), periodic: [X]),"));
+        let motions = |sim: &Simulation| {
+            let bodies = sim.resources().get::<RigidBodies>();
+            bodies.iter().map(|body| (body.state.velocity, body.state.angular_momentum)).collect::<Vec<_>>()
+        };
+        let (momentum, before) = (momenta(&sim).0, motions(&sim));
+        sim.run(|_| true).expect("it runs");
+        let (lost, after) = (momenta(&sim).0 - momentum, motions(&sim));
+        assert!(lost.length() < 1e-10 * momentum.length(), "{low}: {lost}");
+        assert!((after[0].0 - before[0].0).length() > 0.1, "they have not met: {after:?}");
+        after
+    };
+    for ((v, l), (v_across, l_across)) in after(-1.0).iter().zip(&after(-0.1)) {
+        assert!((*v - *v_across).length() < 1e-6 * v.length(), "{v} {v_across}");
+        assert!((*l - *l_across).length() < 1e-6 * l.length(), "{l} {l_across}");
     }
 }
 
