@@ -88,15 +88,19 @@ fn what_a_fluid_crushes_ends_the_run_or_is_taken_out() {
         let one = chip("a", &large, formulation, ", remove_fragments()");
         // The fluid fills their place at a fifth of its speed of sound, which costs some per cent of its
         // energy. What is crushed within a few steps leaves in the middle of one: that error is proportional
-        // to the step.
+        // to the step, and erratic in usual ones (up to 26 % of the energy at 12 to 18 kPa). At half of them
+        // it is below 1 % at these pressures, and walls give nothing; they gave 10 to 20 mJ as particles
+        // beside the turned lattice of the body were repelled by spheres.
         for (bodies, shape, particles, factor, end, error) in
-            [(two, shape, 8, 0.25, 0.006, 0.01), (one, large.clone(), 48, 1.0, 0.02, 0.05)]
+            [(two, shape, 8, 0.25, 0.006, 0.01), (one, large.clone(), 48, 0.5, 0.02, 0.02)]
         {
             let mut sim = channel(1.5e4, &bodies, &shape, factor);
             sim.run(|sim| sim.clock().time < end).unwrap_or_else(|error| panic!("{formulation}: {error}"));
             assert_eq!(sim.summary().removed_of.values().sum::<usize>(), particles, "{formulation}");
             let found = sim.ledger().relative_error();
             assert!(found.abs() < error, "{formulation}, {particles} particles: {found}");
+            let given = sim.ledger().total_named("wall_pressure");
+            assert!(particles == 8 || given.abs() < 2e-3, "{formulation}: {given} J");
         }
     }
 }
