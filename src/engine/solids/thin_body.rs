@@ -94,21 +94,24 @@ fn is_thick(positions: &[DVec3], spacing: f64, dimension: usize) -> bool {
     for x in positions {
         is_filled[index(((*x - lowest) / cell).to_array().map(|of| of as usize + 2))] = true;
     }
-    // The cells within `range` of one.
-    let near = |range: usize| -> Vec<usize> {
-        let layers = if dimension == 2 { 0..1 } else { 0..2 * range + 1 };
-        let row = |j: usize, k: usize| (0..2 * range + 1).map(move |i| index([i, j, k]));
-        layers.flat_map(|k| (0..2 * range + 1).flat_map(move |j| row(j, k))).collect()
+    // From a cell to those within `range` of it; wrapping, for some of them are before it.
+    let shifts = |range: usize| -> Vec<usize> {
+        let width = || 0..2 * range + 1;
+        let (layers, layer) = if dimension == 2 { (0..1, 0) } else { (width(), range) };
+        let own = index([range, range, layer]);
+        let row = |j: usize, k: usize| width().map(move |i| index([i, j, k]).wrapping_sub(own));
+        layers.flat_map(|k| width().flat_map(move |j| row(j, k))).collect()
     };
-    let corner = |range: usize| index([range, range, if dimension == 2 { 0 } else { range }]);
-    let (beside, corner_beside, around, corner_around) = (near(1), corner(1), near(2), corner(2));
+    let near = |of: &[bool], cell: usize, shift: usize| of[cell.wrapping_add(shift)];
     let filled = || (0..is_filled.len()).filter(|&cell| is_filled[cell]);
+    let beside = shifts(1);
     let mut is_inside = vec![false; is_filled.len()];
     for cell in filled() {
-        let count = beside.iter().filter(|&shift| is_filled[cell + shift - corner_beside]).count();
+        let count = beside.iter().filter(|&&shift| near(&is_filled, cell, shift)).count();
         is_inside[cell] = count as f64 >= FILLED * beside.len() as f64;
     }
-    filled().all(|cell| around.iter().any(|shift| is_inside[cell + shift - corner_around]))
+    let around = shifts(2);
+    filled().all(|cell| around.iter().any(|&shift| near(&is_inside, cell, shift)))
 }
 
 impl<'a> Operator<'a> {

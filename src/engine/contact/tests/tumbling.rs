@@ -145,7 +145,7 @@ fn polygons_that_collide_keep_energy_and_momenta() {
         let start = momenta(&sim);
         sim.run(|_| true).expect("it runs");
         let (end, error) = (momenta(&sim), sim.ledger().relative_error());
-        // The spins make the scale: the two move towards each other.
+        // The scale of both, at lengths of some 0.5 m: momenta of bodies that approach each other cancel.
         let scale = start.1.length();
         assert!((end.0 - start.0).length() < 1e-9 * scale, "{number}");
         assert!((end.1 - start.1).length() < 1e-9 * scale, "{number}");
