@@ -3,11 +3,11 @@
 
 mod common;
 
-use common::simulation;
+use common::{momentum, simulation};
 use meshless::glam::DVec3;
 use meshless::scene::Source;
 use meshless::simulation::Simulation;
-use meshless::world::{BodyId, Mass, Position, ReferencePosition, Velocity};
+use meshless::world::{BodyId, Position, ReferencePosition};
 
 const CONTACT: &str = r#"contacts: [Contact(between: ("tongs", "tongs"), law: Penalty())],"#;
 
@@ -54,10 +54,7 @@ fn gaps(mut sim: Simulation) -> (Vec<f64>, f64, f64) {
         true
     })
     .expect("a run");
-    let (view, rows) = sim.world().body_view(BodyId(0));
-    let (m, v) = (view.read::<Mass>().expect("masses"), view.read::<Velocity>().expect("velocities"));
-    let momentum: DVec3 = rows.clone().map(|k| m[k].0 * v[k].0).sum();
-    let of_parts: f64 = rows.map(|k| m[k].0 * v[k].0.length()).sum();
+    let (momentum, of_parts) = momentum(&sim);
     (gaps, error, momentum.length() / of_parts)
 }
 

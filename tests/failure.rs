@@ -1,13 +1,16 @@
 //! Bodies that fail, with the standard plugins about them.
 
+mod common;
+
+use common::momentum;
 use meshless::glam::DMat3;
 use meshless::prelude::DVec3;
 use meshless::record::StateHash;
 use meshless::scene::{Source, parse};
 use meshless::simulation::Simulation;
 use meshless::world::{
-    BodyId, Damage, DeformationGradient, HourglassModulus, Mass, PiolaStress, Position, ReferencePosition,
-    Removed, Temperature, Velocity,
+    BodyId, Damage, DeformationGradient, HourglassModulus, PiolaStress, Position, ReferencePosition, Removed,
+    Temperature, Velocity,
 };
 use meshless::{assembly, standard_plugins};
 
@@ -44,15 +47,6 @@ fn flying(form: &str, then: &str) -> Simulation {
     );
     let (scene, source) = parse(Source::new("strip.ron", text)).unwrap_or_else(|error| panic!("{error}"));
     assembly::build(&scene, &source, &standard_plugins()).unwrap_or_else(|error| panic!("{error}"))
-}
-
-/// Momentum, and the sum of its sizes.
-fn momentum(sim: &Simulation) -> (DVec3, f64) {
-    let (view, _) = sim.world().body_view(BodyId(0));
-    let (mass, velocity) =
-        (view.read::<Mass>().expect("masses"), view.read::<Velocity>().expect("velocities"));
-    let each = mass.iter().zip(velocity.iter()).map(|(mass, velocity)| mass.0 * velocity.0);
-    each.fold((DVec3::ZERO, 0.0), |(sum, size), p| (sum + p, size + p.length()))
 }
 
 fn failed(sim: &Simulation) -> usize {

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::simulation;
+use common::{momentum, simulation};
 use meshless::scene::Source;
 use meshless::simulation::Simulation;
 
@@ -44,6 +44,8 @@ fn water_beside_the_ends_of_a_stepped_plate_is_not_repelled_by_what_it_starts_in
             given.abs() < 5e-3 * start && error.abs() < 5e-3,
             "{formulation}: {given} of {start} J, {error}"
         );
+        let (sum, size) = momentum(&sim);
+        assert!(sum.length() < 1e-7 * size, "{formulation}: {sum} of {size}");
     }
 }
 
@@ -64,6 +66,8 @@ fn small_and_stepped_bodies_in_a_fluid_take_stable_sub_steps() {
         sim.run(|_| true).expect("a run");
         let (error, damped) = (sim.ledger().relative_error(), sim.ledger().total_named("coupling_damping"));
         assert!(error.abs() < 0.02 && damped < 0.1 * start, "{shape}, {formulation}: {error}, {damped} J");
+        let (sum, size) = momentum(&sim);
+        assert!(sum.length() < 1e-7 * size, "{shape}, {formulation}: {sum} of {size}");
     }
 }
 

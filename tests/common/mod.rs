@@ -7,8 +7,10 @@ pub mod thin;
 pub mod touching;
 pub mod wearing;
 
+use meshless::glam::DVec3;
 use meshless::scene::{Source, parse};
 use meshless::simulation::Simulation;
+use meshless::world::{BodyId, Mass, Velocity};
 use meshless::{assembly, standard_plugins};
 
 /// Two bodies in two or three dimensions, one irregular, loaded and damped, with every stabilizer of
@@ -257,6 +259,20 @@ pub fn failing_metals() -> Source {
 pub fn simulation(source: &Source) -> Simulation {
     let (scene, source) = parse(source.clone()).unwrap_or_else(|error| panic!("{error}"));
     assembly::build(&scene, &source, &standard_plugins()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Momentum of all particles, and the sum of its sizes, kg m/s.
+pub fn momentum(sim: &Simulation) -> (DVec3, f64) {
+    let mut sums = (DVec3::ZERO, 0.0);
+    for body in 0..sim.world().bodies().len() {
+        let (view, rows) = sim.world().body_view(BodyId(body));
+        let (mass, velocity) =
+            (view.read::<Mass>().expect("masses"), view.read::<Velocity>().expect("velocities"));
+        for p in rows.map(|row| mass[row].0 * velocity[row].0) {
+            sums = (sums.0 + p, sums.1 + p.length());
+        }
+    }
+    sums
 }
 
 /// The scene with another formulation in the place of the total-Lagrangian one.
