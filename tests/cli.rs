@@ -218,6 +218,11 @@ fn an_unstable_run_fails_and_keeps_its_last_state() {
     assert_eq!(output.status.code(), Some(1), "{}", out(&output));
     assert!(err(&output).contains("error: "), "{}", err(&output));
     assert!(err(&output).contains("`strip`"), "{}", err(&output));
+    assert!(
+        err(&output).contains("damping may help; the fixed time step of 10 µs exceeds"),
+        "{}",
+        err(&output)
+    );
     assert!(folder.path().join("o/failed.mlc").is_file());
 }
 

@@ -17,6 +17,7 @@ use crate::world::{MissingColumn, PhaseId, World};
 mod checkpoint;
 mod closing;
 mod inputs;
+mod long_steps;
 mod sub_steps;
 mod summary;
 mod uniform_motion;
@@ -288,14 +289,14 @@ impl Simulation {
         let drift = self.uniform_motion.at_start(&self.world, &self.resources, &self.ledger);
         self.ledger.open(drift.map_err(StepError::from)?);
         self.take_limit();
-        self.check_fixed_step();
+        self.watch_fixed_step();
         self.run_stages(|stage| stage == Stage::Record)?;
         Ok(())
     }
 
     /// Does one step. If it fails, the recorded output is readable, and the last checkpoint stays valid.
     pub fn step(&mut self) -> Result<(), RunError> {
-        let result = self.try_step();
+        let result = self.try_step().map_err(|error| self.with_long_steps(error));
         if let Err(error) = &result {
             self.fail(error);
         }
@@ -317,6 +318,7 @@ impl Simulation {
         self.ledger.close_step();
         self.require_equal_ledgers()?;
         self.take_limit();
+        self.watch_fixed_step();
         self.run_stages(|stage| stage == Stage::Record)?;
         self.checkpoint_if_due()
     }
@@ -429,18 +431,5 @@ impl Simulation {
         let rest = self.end - self.clock.time;
         // A rest of a little more than one step is one step: no sliver remains at the end.
         Ok(if dt >= rest * (1.0 - 1e-9) { rest } else { dt })
-    }
-
-    fn check_fixed_step(&mut self) {
-        if let (scene::StepRule::Fixed(dt), Some(limit)) = (&self.step_rule, &self.next_limit)
-            && *dt > limit.dt
-        {
-            self.warnings.push(format!(
-                "the fixed time step of {} exceeds the stable one of {}, limited by {}",
-                quantity(*dt, "s"),
-                quantity(limit.dt, "s"),
-                limit.by
-            ));
-        }
     }
 }

@@ -128,6 +128,17 @@ impl StepError {
         }
         self
     }
+
+    /// The same where steps are too long, which `why` tells: whatever has failed, it is for that.
+    #[must_use]
+    pub(crate) fn of_long_steps(mut self, why: &str) -> Self {
+        match &mut self {
+            Self::Unstable { detail, .. } => *detail = format!(": {why}"),
+            Self::EnergyGrowth { advice, .. } => *advice = format!("; {why}"),
+            _ => {}
+        }
+        self
+    }
 }
 
 /// Warns of something that has grown: in the place of the warning that begins alike, if there is one.
