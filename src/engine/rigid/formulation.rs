@@ -18,6 +18,9 @@ use crate::scene::{Contact, Dimension, Vec3};
 use crate::shapes::{ByDistance, Shape, Surface};
 use crate::world::{BodyId, BodySet, ColumnSet, Mass, Mobility, Position, Velocity};
 
+/// Largest share of a spin across the axis of rotation that is taken for rounding.
+const ROUNDING: f64 = 1e-6;
+
 /// Rigid body: it moves as a whole, with mass and inertia of its shape, and touches others with the exact
 /// surface of its shape. It moves freely, except along the axes that `Fix`, `Velocity` or `Displacement` hold
 /// or drive; these conditions must select the whole body.
@@ -251,7 +254,51 @@ impl Rigid {
             let help = "give `spin: (0.0, 0.0, rate)`";
             return Err(SetupError::parameter(format!("bodies[{}].formulation.spin", id.0), message, help));
         }
-        Ok(())
+        self.check_spin(plan, constraint)
+    }
+
+    /// Whether the body can start with the stated spin: what its constraint does not let it have is gone
+    /// before the first step.
+    fn check_spin(&self, plan: &BodyPlan, constraint: &Constraint) -> Result<(), SetupError> {
+        let (spin, name) = (self.spin.0, &plan.name);
+        let refuse = |message: String, help: &str| {
+            Err(SetupError::parameter(format!("bodies[{}].formulation.spin", plan.id.0), message, help))
+        };
+        if spin == DVec3::ZERO {
+            return Ok(());
+        }
+        match &constraint.turning {
+            RotationConstraint::Free => Ok(()),
+            RotationConstraint::Held if self.rotation.is_none() => refuse(
+                format!(
+                    "rigid body `{name}` has a spin, and does not turn: a condition holds or drives it along some axes"
+                ),
+                "`Rigid(rotation: Free)` lets it turn; else leave out `spin`",
+            ),
+            RotationConstraint::Held => refuse(
+                format!("rigid body `{name}` has a spin, and its rotation is held"),
+                "leave out `spin`, or let it turn by `rotation: Free` or `rotation: About(axis)`",
+            ),
+            RotationConstraint::Driven(rotation) => refuse(
+                format!(
+                    "the rotation of rigid body `{name}` is prescribed by `{}`, and it has a spin",
+                    rotation.by
+                ),
+                "leave out `spin`",
+            ),
+            RotationConstraint::About(axis) => {
+                let along = *axis * axis.dot(spin);
+                if spin.distance(along) <= ROUNDING * spin.length() {
+                    return Ok(());
+                }
+                refuse(
+                    format!(
+                        "rigid body `{name}` turns about {axis} alone, and its spin {spin} 1/s has another axis"
+                    ),
+                    "give a spin along the axis of `rotation: About(axis)`",
+                )
+            }
+        }
     }
 }
 
