@@ -239,3 +239,17 @@ fn a_relaxation_that_has_not_come_to_rest_at_the_end_says_so() {
     assert!(warned("local_damping(mode: Relaxation())"));
     assert!(!warned("local_damping(mode: Relaxation(stop: false))") && !warned("local_damping(rate: 1.0)"));
 }
+
+#[test]
+fn a_fluid_that_is_to_lose_its_motion_is_not_said_to_shake() {
+    let text = "(dimension: Two, materials: {\"water\": Fluid(density: 1000.0, sound_speed: 20.0)},
+        bodies: [(name: \"drop\", material: \"water\", shape: Box(min: (0, 0), max: (0.2, 0.2)), spacing: 0.02,
+            velocity: (1.0, 0.5), formulation: Fluid, plugins: [local_damping(rate: 3.0)])], time: (end: 0.5))";
+    let mut sim = simulation(text);
+    sim.run(|_| true).expect("a run");
+    let kept = (-2.0 * 3.0 * sim.clock().time).exp();
+    let start = 0.5 * 40.0 * 1.25;
+    let damped = account(&sim, "local_damping");
+    assert!((damped - start * (1.0 - kept)).abs() < 1e-9 * start, "{damped}");
+    assert!(!sim.warnings().iter().any(|text| text.contains("has been lost")), "{:?}", sim.warnings());
+}

@@ -9,6 +9,7 @@ use glam::DVec3;
 
 use super::error::SetupError;
 use super::handed::Contributions;
+use super::offers::BodyKind;
 use super::plan::BodyPlan;
 use super::prescription::Prescription;
 use super::selection::{self, Selection};
@@ -91,6 +92,17 @@ impl<'s> SimBuilder<'s> {
     /// Acceleration of gravity, m/s2.
     pub fn gravity(&self) -> DVec3 {
         self.scene.gravity.0
+    }
+
+    /// Work that gravity could do on all bodies but boundaries along their own heights, J. What is at rest
+    /// has hardly any other energy.
+    pub fn work_of_weight(&self) -> f64 {
+        let of = |body: &BodyPlan| {
+            let volume: f64 = body.sites.iter().map(|site| site.volume).sum();
+            let height = body.bounds.extent().abs().dot(self.gravity().abs());
+            if height.is_finite() { body.material.density * volume * height } else { 0.0 }
+        };
+        self.bodies().iter().filter(|body| body.kind != BodyKind::Boundary).map(of).sum()
     }
 
     /// The periodic axes of the scene.

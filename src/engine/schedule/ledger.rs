@@ -25,7 +25,9 @@ pub const INTO_HEAT: &str = "into_heat";
 pub const REMOVED_ENERGY: &str = "removed";
 
 const KINETIC: &str = "kinetic";
-const GRAVITY: &str = "gravity";
+
+/// Account of the work of gravity.
+pub const GRAVITY: &str = "gravity";
 
 /// Name and kind of the account of a system.
 #[derive(Clone, Copy, Debug)]

@@ -16,7 +16,9 @@ mod trigger;
 pub(crate) use common_motion::CommonMotion;
 pub use each::{Adds, EachRow};
 pub use intruders::Intruders;
-pub use ledger::{Account, AccountId, AccountKind, EnergyAccount, INTO_HEAT, Ledger, REMOVED_ENERGY};
+pub use ledger::{
+    Account, AccountId, AccountKind, EnergyAccount, GRAVITY, INTO_HEAT, Ledger, REMOVED_ENERGY,
+};
 pub use limits::{Limit, TimeStepLimits};
 pub use order::{Schedule, ScheduleError};
 pub use resources::{Resources, Shareable, Shared, SharedValues};

@@ -7,7 +7,7 @@ use super::remedies::Remedies;
 use crate::formulations::fluid::{FlowCloud, FlowParticle, Group};
 use crate::notation::quantity;
 use crate::parallel::{BlockSum, sum_over_blocks};
-use crate::plugin::{BodyKind, BodyPlan, SimBuilder};
+use crate::plugin::SimBuilder;
 use crate::removal::REMOVED_ENERGY;
 use crate::schedule::{Account, AccountKind, INTO_HEAT, Step, replace_warning};
 
@@ -52,7 +52,7 @@ struct SuppliedEnergy {
 impl WrongSign {
     /// Over the work that gravity could do.
     pub fn new(sim: &SimBuilder<'_>) -> Self {
-        Self { weight: work_of_weight(sim), accounts: Vec::new() }
+        Self { weight: sim.work_of_weight(), accounts: Vec::new() }
     }
 
     /// Warns of every account that has given energy; the warning keeps up with the largest share.
@@ -94,18 +94,6 @@ impl WrongSign {
             replace_warning(step.warnings, &begin, text);
         }
     }
-}
-
-/// Work that gravity could do on all bodies along their own heights, J.
-fn work_of_weight(sim: &SimBuilder<'_>) -> f64 {
-    let gravity = sim.gravity();
-    let of = |body: &BodyPlan| {
-        let volume: f64 = body.sites.iter().map(|site| site.volume).sum();
-        let height = body.bounds.extent().abs().dot(gravity.abs());
-        if height.is_finite() { body.material.density * volume * height } else { 0.0 }
-    };
-    let moved = sim.bodies().iter().filter(|body| body.kind != BodyKind::Boundary);
-    moved.map(of).sum()
 }
 
 /// Corners of the box around a fluid, m, and the magnitude of the load on it along each axis, N.

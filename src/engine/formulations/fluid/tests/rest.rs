@@ -215,3 +215,24 @@ fn bodies_across_a_side_of_the_domain_cover_the_water_below() {
         assert!(error < 1e-3 * 9810.0 * SPACING, "{center}: {error}");
     }
 }
+
+/// Oil, 24 deep, that hums in an open tank: its friction exceeds its kinetic energy, but nothing flows.
+#[test]
+fn friction_of_a_liquid_at_rest_is_not_warned_of() {
+    let spacing = 0.4 / 24.0;
+    let mut sim = simulation(&format!(
+        r#"(dimension: Two, gravity: (0.0, -9.81), materials: {{"oil": Fluid(density: 1000.0, sound_speed: 30.0, viscosity: 0.5)}},
+            bodies: [
+                (name: "oil", material: "oil", shape: Box(min: (0, 0), max: (0.4, 0.4)), spacing: {spacing}, formulation: Fluid),
+                (name: "tank", material: "wall", spacing: {spacing}, formulation: Wall(slip: No),
+                 shape: Difference(Box(min: ("-4*{spacing}", "-4*{spacing}"), max: ("0.4 + 4*{spacing}", 0.6)), Box(min: (0, 0), max: (0.4, 9)))),
+            ],
+            time: (end: 0.5))"#
+    ));
+    sim.run(|_| true).expect("a run");
+    let friction = sim.ledger().total_named("viscosity");
+    assert!(friction > sim.ledger().motion(), "{friction}");
+    let told: Vec<_> =
+        sim.warnings().iter().filter(|warning| warning.contains("particles of `oil`")).collect();
+    assert!(told.is_empty(), "{told:?}");
+}

@@ -16,13 +16,17 @@ use super::closed::is_closed;
 /// Energy that stabilizers have taken over the largest that any account has held that is worth a warning.
 const SHARE: f64 = 0.2;
 
+/// Account of the damping of the velocity of every particle, which a scene asks for to lose motion.
+const DAMPING: &str = "local_damping";
+
 /// Evaluates the energy that stabilizers have taken from the fluids by the end of a run.
 pub fn look(is_told: &mut bool, cloud: &FlowCloud, scratch: &mut Vec<Option<f64>>, step: &mut Step<'_>) {
     let fluids = || cloud.groups.iter().filter(|group| group.fluid().is_some());
     let of_fluids = |account: &Account| fluids().map(|group| account.of(group.body)).sum::<f64>();
     let is_stabilizer = |account: &&Account| {
         let name = account.name.as_str();
-        account.kind == AccountKind::Dissipated && !ACCOUNTS.contains(&name) && name != REMOVED_ENERGY
+        let is_meant = ACCOUNTS.contains(&name) || [REMOVED_ENERGY, DAMPING].contains(&name);
+        account.kind == AccountKind::Dissipated && !is_meant
     };
     let taken = || step.ledger.accounts().iter().filter(is_stabilizer).map(|a| (a, of_fluids(a)));
     let total: f64 = taken().map(|(_, energy)| energy).sum();

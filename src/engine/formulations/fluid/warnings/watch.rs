@@ -88,7 +88,7 @@ pub fn add(phases: Vec<PhaseId>, groups: &[Group], diffusion: Option<String>, si
         compression: CompressionWatch::default(),
         filling: FillingWatch::default(),
         stretched: Vec::new(),
-        unevenness: Unevenness::default(),
+        unevenness: Unevenness::new(sim.work_of_weight()),
         tension: TensionWatch::new(groups, sim),
         spreading: Spreading::new(sim),
         frames: Trigger::after_interval(sim.scene().record_interval()),
