@@ -163,9 +163,10 @@ fn beside_suction(cloud: &FlowCloud) -> Vec<bool> {
     found
 }
 
-/// Whether no fluid has a free surface.
+/// Whether there is a fluid and none has a free surface. One that has left the domain had one.
 pub(super) fn is_closed(cloud: &FlowCloud, scratch: &mut Vec<Option<f64>>) -> bool {
-    are_closed(cloud, |_| true, scratch)
+    let is_there = cloud.records()[..cloud.fluid].iter().any(|record| record.volume() > 0.0);
+    is_there && are_closed(cloud, |_| true, scratch)
 }
 
 /// Whether the particles of the fluids that count have no free surface.
