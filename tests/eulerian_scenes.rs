@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::eulerian::{Particle, after, block, particles};
+use common::eulerian::{FOLLOWING, Particle, UPSET, after, block, particles};
 use common::{all_plugins, eulerian, failing, failing_metals, metals, removal, simulation};
 use meshless::glam::{DMat3, DVec3};
 use meshless::scene::Source;
@@ -15,8 +15,12 @@ fn bits_do_not_depend_on_threads_or_on_a_restart() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("state.mlc");
     let steps = 90;
-    for source in [all_plugins(2), all_plugins(3), removal(), failing(), failing_metals(), metals()] {
-        let source = eulerian(&source);
+    let sources = [all_plugins(2), all_plugins(3), removal(), failing(), failing_metals(), metals()];
+    let upset = |dimension: usize| {
+        let plugins = "plugins: [hourglass_control()],";
+        block(dimension, FOLLOWING, UPSET[dimension - 2], plugins)
+    };
+    for source in sources.iter().map(eulerian).chain([upset(2), upset(3)]) {
         let on = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a thread pool");
             pool.install(|| after(&source, steps).state_hash())
@@ -322,6 +326,7 @@ fn what_it_does_not_offer_is_an_error_at_its_place() {
     for (formulation, words) in [
         ("Eulerian(support: 1)", "`support` must be between 1.5 and 10 spacings"),
         ("Eulerian(artificial_stress: (epsilon: -1))", "`artificial_stress.epsilon` must not be negative"),
+        ("Eulerian(support_follows: true, divergence: Shepard)", "needs the corrected gradient"),
         ("Eulerian(artificial_stress: (exponent: 0))", "`artificial_stress.exponent` must be 1 to 16"),
     ] {
         let text = fault(&block(2, formulation, at_rest, ""));

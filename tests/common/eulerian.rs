@@ -1,6 +1,8 @@
 //! An Eulerian block, and what the sums over pairs need of its particles.
 
+use meshless::formulations::eulerian::SupportMetric;
 use meshless::glam::{DMat3, DVec3};
+use meshless::linalg::Sym3;
 use meshless::scene::Source;
 use meshless::simulation::Simulation;
 use meshless::world::{
@@ -8,6 +10,14 @@ use meshless::world::{
 };
 
 use super::simulation;
+
+/// The formulation with supports that become ellipsoids.
+pub const FOLLOWING: &str = "Eulerian(support_follows: true)";
+/// Velocities of a block that press it to some 0.6 of its length, in a plane and in space.
+pub const UPSET: [&str; 2] = [
+    r#"("0.3 - 1.2*(x - 0.5) + 0.8*y", "0.3*sin(5*x) + 0.8*(y - 0.2)")"#,
+    r#"("0.3 - 1.2*(x - 0.5) + 0.8*y", "0.3*sin(5*x)", "0.5*x + 0.4*(z - 0.2)")"#,
+];
 
 /// A block of 1 x 0.4 m of irregular particles with a velocity, and in three dimensions 0.4 m deep.
 pub fn block(dimension: usize, formulation: &str, velocity: &str, more: &str) -> Source {
@@ -48,6 +58,8 @@ pub struct Particle {
     pub volume: f64,
     pub deformation: DMat3,
     pub stress: DMat3,
+    /// Metric of its support.
+    pub metric: Sym3,
 }
 
 pub fn particles(sim: &Simulation) -> Vec<Particle> {
@@ -57,6 +69,7 @@ pub fn particles(sim: &Simulation) -> Vec<Particle> {
     let volume = view.read::<ReferenceVolume>().expect("volumes");
     let deformation = view.read::<DeformationGradient>().expect("gradients");
     let stress = view.read::<PiolaStress>().expect("stresses");
+    let metric = view.read::<SupportMetric>().expect("supports");
     let of = |k: usize| Particle {
         x: x[k].0,
         v: v[k].0,
@@ -65,6 +78,7 @@ pub fn particles(sim: &Simulation) -> Vec<Particle> {
         volume: volume[k].0,
         deformation: deformation[k].0,
         stress: stress[k].0,
+        metric: metric[k].0,
     };
     rows.map(of).collect()
 }

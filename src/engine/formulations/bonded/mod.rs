@@ -22,6 +22,7 @@ mod internal_force;
 mod local_motion;
 mod pairs;
 mod rows;
+mod seen_ellipsoids;
 mod support;
 
 pub(super) use balance::{HeldBody, balanced_shares};
@@ -40,4 +41,5 @@ pub(super) use local_motion::BondedMotion;
 pub(super) use pairs::{BodyKernel, BondPairs, BondedRows};
 pub use rows::PackedParticle;
 pub(super) use rows::pack;
+pub(super) use seen_ellipsoids::{FourSeen, OwnEllipsoid, SeenEllipsoid};
 pub(super) use support::choose_support;

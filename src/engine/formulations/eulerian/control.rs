@@ -21,7 +21,7 @@
 //! bending would need three times the largest stiffness. m_ij reduces the weight of pairs that were
 //! originally further apart than the support H and became neighbours by flow.
 
-use glam::DMat3;
+use glam::{DMat3, DVec3};
 
 use super::control_pairs::ControlPairs;
 use super::control_rows::{BodyControl, EulerianControlRows};
@@ -47,7 +47,9 @@ pub(super) fn run(
     energy: &mut [HourglassEnergy],
     mass: &[crate::world::Mass],
 ) -> FoldedEnergy {
-    let EulerianRows { lists, kernels, points, carried, near, stresses, control: own, plane, .. } = packed;
+    let EulerianRows {
+        lists, kernels, points, supports, carried, near, stresses, control: own, plane, ..
+    } = packed;
     let rows = lists.bodies[k].rows.clone();
     let EulerianControlRows { force, stiffness, sums } = own;
     let block = ControlBlock {
@@ -58,9 +60,11 @@ pub(super) fn run(
     };
     let (divergence, support, offsets) =
         (kernels[k].divergence, lists.bodies[k].support, lists.pairs.offsets());
+    let ellipsoids = supports.of(&lists.bodies[k]);
     let sum = for_each_own_block(block, sums, &|first, block: ControlBlock<'_>| {
         let first = rows.start + first;
-        let pairs = ControlPairs { support, offsets, near, points, carried, across: control.across };
+        let pairs =
+            ControlPairs { support, offsets, near, points, ellipsoids, carried, across: control.across };
         let pass = EulerianControlPass { control, divergence, pairs, mass, first };
         let mut sum = FoldedEnergy::default();
         run_hot_on(*plane, ControlLoop { pass, block, sum: &mut sum });
@@ -121,7 +125,13 @@ impl HotLoop for ControlLoop<'_, '_> {
                 sum.released -= now;
             }
             let slope = sums.couple * scale;
-            pass.add_stress(k, &(slope * own.deformation().transpose()), &mut stresses[k]);
+            let mut stress = slope * own.deformation().transpose();
+            if sums.turn != DVec3::ZERO {
+                let DVec3 { x, y, z } = sums.turn * -scale;
+                stress +=
+                    DMat3::from_cols(DVec3::new(0.0, z, -y), DVec3::new(-z, 0.0, x), DVec3::new(y, -x, 0.0));
+            }
+            pass.add_stress(k, &stress, &mut stresses[k]);
         }
     }
 }

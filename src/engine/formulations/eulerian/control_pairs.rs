@@ -6,6 +6,7 @@ use super::control_rows::Carried;
 use super::near::EulerianNeighbors;
 use super::particle::EulerianParticle;
 use super::within::filled_up;
+use crate::formulations::bonded::{OwnEllipsoid, SeenEllipsoid};
 use crate::parallel::{FourLanes, Lanes4, Matrix, Number, Vector};
 
 /// The pairs of a body.
@@ -15,6 +16,8 @@ pub(super) struct ControlPairs<'a> {
     pub offsets: &'a [usize],
     pub near: &'a EulerianNeighbors,
     pub points: &'a [EulerianParticle],
+    /// Ellipsoids of all rows; empty where supports are spheres.
+    pub ellipsoids: &'a [SeenEllipsoid],
     pub carried: &'a [Carried],
     /// Resistance to the error across a pair, over that to the error along it, for each Pa of the lesser
     /// modulus of the pair, 1/Pa.
@@ -27,6 +30,8 @@ pub(super) struct ControlRowSums {
     pub force: DVec3,
     /// dU/dF.
     pub couple: DMat3,
+    /// The torque with which U turns the ellipsoid: its force along normals has one, which this takes back.
+    pub turn: DVec3,
     pub stiffness: f64,
     /// Four times the energies, with the moduli of now and of the last step.
     pub energy: f64,
@@ -40,12 +45,15 @@ struct OwnControl<A: FourLanes> {
     deformation: Matrix<A>,
     modulus: f64,
     modulus_before: f64,
+    ellipsoid: OwnEllipsoid<A>,
 }
 
 /// The sums so far.
 struct ControlSums<A: FourLanes> {
     force: Vector<A>,
     couple: [Vector<A>; 3],
+    /// Four times the couple of the ellipsoid.
+    turn: [Number<A>; 3],
     stiffness: Number<A>,
     energy: Number<A>,
     energy_before: Number<A>,
@@ -79,11 +87,17 @@ impl ControlPairs<'_> {
     /// The sums of row `i`.
     #[inline(always)]
     pub fn of_row<A: FourLanes>(&self, a: A, i: usize) -> ControlRowSums {
+        if self.ellipsoids.is_empty() { self.sums::<A, false>(a, i) } else { self.sums::<A, true>(a, i) }
+    }
+
+    #[inline(always)]
+    fn sums<A: FourLanes, const STRETCHED: bool>(&self, a: A, i: usize) -> ControlRowSums {
         let own = self.own(a, i);
         let (zero, none) = (Vector::zero(a), Number::zero(a));
         let mut sums = ControlSums {
             force: zero,
             couple: [zero; 3],
+            turn: [none; 3],
             stiffness: none,
             energy: none,
             energy_before: none,
@@ -95,7 +109,7 @@ impl ControlPairs<'_> {
         let (curvature_fours, curvature_rest) = curvatures.as_chunks::<4>();
         for n in 0..fours.len() {
             let kernel = FourKernel { weight: Lanes4(weight_fours[n]), curvature: curvature_fours[n] };
-            self.add(a, &own, &fours[n], kernel, &mut sums);
+            self.add::<A, STRETCHED>(a, &own, &fours[n], kernel, &mut sums);
         }
         if !rest.is_empty() {
             // What fills the lanes that are left has no weight.
@@ -104,14 +118,17 @@ impl ControlPairs<'_> {
                 kernel.weight.0[lane] = *weight;
                 kernel.curvature[lane] = *curvature;
             }
-            self.add(a, &own, &filled_up(rest), kernel, &mut sums);
+            self.add::<A, STRETCHED>(a, &own, &filled_up(rest), kernel, &mut sums);
         }
         let force = total(a, sums.force, sums.stiffness);
         let [x, y, z] = sums.couple;
         let (x, y, z) = (total(a, x, sums.energy), total(a, y, sums.energy_before), total(a, z, none));
+        let [along_x, along_y, along_z] = sums.turn.map(Number::lanes);
+        let turn = a.sums([along_x, along_y, along_z, none.lanes()]).xyz();
         ControlRowSums {
             force: force.xyz(),
             couple: DMat3::from_cols(x.xyz(), y.xyz(), z.xyz()),
+            turn: turn * 0.25,
             stiffness: force.0[3],
             energy: x.0[3],
             energy_before: y.0[3],
@@ -128,6 +145,7 @@ impl ControlPairs<'_> {
             deformation: Matrix(deformation),
             modulus: x.0[3],
             modulus_before: y.0[3],
+            ellipsoid: OwnEllipsoid::new(a, &self.ellipsoids.get(i).copied().unwrap_or_default()),
         }
     }
 
@@ -165,7 +183,7 @@ impl ControlPairs<'_> {
 
     /// Adds four neighbours.
     #[inline(always)]
-    fn add<A: FourLanes>(
+    fn add<A: FourLanes, const STRETCHED: bool>(
         &self,
         a: A,
         own: &OwnControl<A>,
@@ -206,11 +224,15 @@ impl ControlPairs<'_> {
         sums.energy = scale.mul_add(own_energy, sums.energy);
         let own_before = volume * (-before).if_below(0.0, Number::splat(a, own.modulus_before));
         let part = before.min(own.modulus_before) * self.across;
-        let own_along_square = own_share.squared();
-        let error = part.mul_add(own_square - own_along_square, own_along_square);
+        let error = part.mul_add(own_square - own_share.squared(), own_share.squared());
         sums.energy_before = (scale * own_before).mul_add(error, sums.energy_before);
         // From w = -W' / r the slope of the weight is -(W'' + w) / r.
-        let slope = half * (along - (own_along + other_along)) + 0.25 * (curvature + weight) * energy;
+        let of_shape = half * (along - (own_along + other_along));
+        let of_weight = 0.25 * (curvature + weight) * energy;
+        if STRETCHED {
+            self.add_along_normals(a, own, (four, back), of_weight * square, sums);
+        }
+        let slope = if STRETCHED { of_shape } else { of_shape + of_weight };
         sums.force = back.mul_add(slope, sums.force);
         sums.force = own_error.mul_add(back_half * (own_along + own_whole), sums.force);
         sums.force = other_error.mul_add(back_half * (other_along + other_whole), sums.force);
@@ -220,6 +242,37 @@ impl ControlPairs<'_> {
         if A::AXES == 3 {
             sums.couple[2] = couple.mul_add(original.z, sums.couple[2]);
         }
+    }
+
+    /// Adds the force of four pairs as their weights change, which is along the normals of the ellipsoids,
+    /// `G x` over the square of the distance, and what turns these.
+    #[inline(always)]
+    fn add_along_normals<A: FourLanes>(
+        &self,
+        a: A,
+        own: &OwnControl<A>,
+        (four, back): (&[u32; 4], Vector<A>),
+        change: Number<A>,
+        sums: &mut ControlSums<A>,
+    ) {
+        let of = four.map(|row| &self.ellipsoids[row as usize]);
+        let (own_normal, normal) = own.ellipsoid.normals(a, back, of);
+        let change = change / normal.dot(back).max(f64::MIN_POSITIVE);
+        sums.force = normal.mul_add(change, sums.force);
+        sums.add_turn(own_normal, back, change);
+    }
+}
+
+impl<A: FourLanes> ControlSums<A> {
+    /// Adds a multiple of the vector product of two vectors to the couple of the ellipsoid. That of vectors
+    /// in a plane is across it.
+    #[inline(always)]
+    fn add_turn(&mut self, v: Vector<A>, w: Vector<A>, times: Number<A>) {
+        if A::AXES == 3 {
+            self.turn[0] += times * (v.y * w.z - v.z * w.y);
+            self.turn[1] += times * (v.z * w.x - v.x * w.z);
+        }
+        self.turn[2] += times * (v.x * w.y - v.y * w.x);
     }
 }
 

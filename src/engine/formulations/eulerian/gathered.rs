@@ -3,7 +3,7 @@
 //! Lanes hold neighbours by their order within the support, so that sums do not depend on the skin of lists.
 
 use super::particle::EulerianParticle;
-use super::within::{Center, filled_up, places, records, square};
+use super::within::{Center, filled_up, places, records};
 use crate::correction::MomentMatrix;
 use crate::linalg::Sym3;
 use crate::parallel::{FourLanes, Lanes4};
@@ -22,26 +22,27 @@ pub(super) trait NeighborBatch {
 
     /// Gathers the records of some neighbours. Returns the number of vectors.
     #[inline(always)]
-    fn gather<A: FourLanes>(
+    fn gather<A: FourLanes, const STRETCHED: bool>(
         &mut self,
         a: A,
-        center: &Center,
+        center: &Center<'_, A, STRETCHED>,
         near: &[u32],
         points: &[EulerianParticle],
     ) -> usize {
         let (fours, rest) = near.as_chunks::<4>();
         for n in 0..fours.len().min(FOURS) {
             let of = records(&fours[n], points);
-            self.arms().put(a, n, center, of);
+            self.arms().put(a, n, center, &fours[n], of);
             self.put(a, n, of);
         }
         if rest.is_empty() {
             return fours.len().min(FOURS);
         }
-        let of = records(&filled_up(rest), points);
-        self.arms().put(a, fours.len(), center, of);
+        let four = filled_up(rest);
+        let of = records(&four, points);
+        self.arms().put(a, fours.len(), center, &four, of);
         self.put(a, fours.len(), of);
-        self.arms().clear_from(rest.len(), fours.len(), center);
+        self.arms().clear_from(rest.len(), fours.len(), center.support);
         (fours.len() + 1).min(FOURS)
     }
 }
@@ -60,6 +61,8 @@ pub(super) struct Arms {
     pub volume: [Lanes4; FOURS],
     /// Distances, m.
     pub distance: [Lanes4; FOURS],
+    /// Factors of the kernel, where supports are ellipsoids.
+    pub density: [Lanes4; FOURS],
 }
 
 impl Arms {
@@ -67,13 +70,25 @@ impl Arms {
         arm: [[Lanes4::ZERO; 3]; FOURS],
         volume: [Lanes4::ZERO; FOURS],
         distance: [Lanes4::ZERO; FOURS],
+        density: [Lanes4::ZERO; FOURS],
     };
 
     /// Puts four particles into vector `n`.
     #[inline(always)]
-    pub fn put<A: FourLanes>(&mut self, a: A, n: usize, center: &Center, of: [&EulerianParticle; 4]) {
+    pub fn put<A: FourLanes, const STRETCHED: bool>(
+        &mut self,
+        a: A,
+        n: usize,
+        center: &Center<'_, A, STRETCHED>,
+        four: &[u32; 4],
+        of: [&EulerianParticle; 4],
+    ) {
         let (arm, volume) = center.arms(a, places(of));
-        self.distance[n] = a.sqrt(square(a, &arm));
+        let (square, density) = center.measure(a, four, &arm);
+        self.distance[n] = a.sqrt(square);
+        if STRETCHED {
+            self.density[n] = density;
+        }
         (self.arm[n], self.volume[n]) = (arm, volume);
     }
 
@@ -83,12 +98,18 @@ impl Arms {
         bytemuck::cast_slice(&self.distance[..fours.next_multiple_of(4).min(FOURS)])
     }
 
+    /// The factors of the kernel of the first vectors.
+    #[inline(always)]
+    pub fn densities(&self, number: usize) -> &[f64] {
+        &bytemuck::cast_slice(&self.density)[..number]
+    }
+
     /// Lets the lanes of vector `n` from `count` on hold nothing: no volume, beyond the support.
     #[inline(always)]
-    pub fn clear_from(&mut self, count: usize, n: usize, center: &Center) {
+    pub fn clear_from(&mut self, count: usize, n: usize, support: f64) {
         for lane in count..4 {
             self.volume[n].0[lane] = 0.0;
-            self.distance[n].0[lane] = 2.0 * center.support;
+            self.distance[n].0[lane] = 2.0 * support;
         }
     }
 }

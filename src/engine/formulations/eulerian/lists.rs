@@ -21,6 +21,12 @@ pub(super) struct EulerianBody {
     pub rows: Range<usize>,
     /// Support radius, m.
     pub support: f64,
+    /// Whether its supports follow the deformation.
+    pub follows: bool,
+    /// Whether they are no spheres any more.
+    pub is_stretched: bool,
+    /// A bound of their longest half axis over the support radius, now and from the next step on.
+    pub longest: f64,
     /// Its symmetry planes and periods.
     pub repeats: Vec<Repeat>,
     /// Whether it touches itself: particles from elsewhere in the body are then no neighbours.
@@ -88,6 +94,11 @@ impl EulerianLists {
         Ok(is_stale)
     }
 
+    /// Lets the next update build the lists.
+    pub fn forget(&mut self) {
+        self.built_from.clear();
+    }
+
     fn build(&mut self, position: &[DVec3]) -> Result<(), (BodyId, NeighborError)> {
         self.built_from.clear();
         let skin = self.skin.width;
@@ -99,7 +110,7 @@ impl EulerianLists {
             self.places.clear();
             self.places.extend_from_slice(&position[body.rows.clone()]);
             self.places.extend(ghost_rows.clone().map(|row| self.ghosts.place(position, row)));
-            let cloud = Cloud::uniform(&self.places, body.support);
+            let cloud = Cloud::uniform(&self.places, body.support * body.longest);
             let first = FirstOfCloud { cloud, targets: body.rows.len() };
             let found = self.search.append(first, skin * body.support, &Periodic::NONE, &mut self.pairs);
             found.map_err(|error| (body.id, error))?;
@@ -171,7 +182,7 @@ impl EulerianBody {
     /// which its ghosts have their sources, m: a body that fills a period moves along with it, and its sides
     /// may deform.
     fn repeats_at(&self, skin: f64, position: &[DVec3]) -> (Vec<Repeat>, f64) {
-        let mut reach = self.support * (1.0 + skin);
+        let mut reach = self.support * (self.longest + skin);
         if self.repeats.is_empty() {
             return (Vec::new(), reach);
         }
@@ -179,7 +190,7 @@ impl EulerianBody {
         let moved = self.repeats.iter().map(|repeat| match *repeat {
             Repeat::Period { axis, length, .. } => {
                 let beyond = bounds.1[axis] - bounds.0[axis] - length;
-                reach = reach.max(self.support * (1.0 + skin) + beyond);
+                reach = reach.max(self.support * (self.longest + skin) + beyond);
                 Repeat::Period { axis, min: bounds.0[axis], length }
             }
             mirror @ Repeat::Mirror { .. } => mirror,
@@ -217,6 +228,9 @@ mod tests {
             id: BodyId(0),
             rows: 0..200,
             support: 2.6,
+            follows: false,
+            is_stretched: false,
+            longest: 1.0,
             repeats,
             touches_itself: false,
         }])

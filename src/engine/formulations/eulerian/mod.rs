@@ -38,6 +38,7 @@ mod rows;
 mod separation;
 mod start;
 mod stress;
+mod supports;
 mod within;
 
 pub use artificial_stress::{ArtificialStress, TensileStress};
@@ -45,3 +46,4 @@ pub use control::HourglassEnergy;
 pub use dilatation::DilatationRate;
 pub use divergence::Divergence;
 pub use parameters::Eulerian;
+pub use supports::SupportMetric;

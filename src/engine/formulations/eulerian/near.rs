@@ -6,6 +6,7 @@ use std::ops::Range;
 use super::gathered::{Arms, BATCH, FOURS, MomentSums, NeighborBatch, velocities, weighted};
 use super::particle::EulerianParticle;
 use super::within::Center;
+use crate::formulations::bonded::SeenEllipsoid;
 use crate::kernels::{Kernel, KernelProfile, KernelVisitor, ProfiledKernel, ScaledKernel};
 use crate::linalg::Sym3;
 use crate::neighbors::NeighborList;
@@ -106,6 +107,8 @@ pub(super) struct ComputePairs<'a, 'r> {
     /// Lists of all rows.
     pub lists: &'a [u32],
     pub points: &'a [EulerianParticle],
+    /// Ellipsoids of all rows; empty where supports are spheres.
+    pub ellipsoids: &'a [SeenEllipsoid],
     pub first: usize,
     pub plane: bool,
     pub rows: &'r mut NeighborRows<'a>,
@@ -130,7 +133,15 @@ impl<K: KernelProfile> HotLoop for PairLoop<'_, '_, K> {
 
     #[inline(always)]
     fn run<A: FourLanes>(self, a: A) {
-        let Self { kernel, look: ComputePairs { support, lists, points, first, rows, .. } } = self;
+        if self.look.ellipsoids.is_empty() { self.over::<A, false>(a) } else { self.over::<A, true>(a) }
+    }
+}
+
+impl<K: KernelProfile> PairLoop<'_, '_, K> {
+    #[inline(always)]
+    fn over<A: FourLanes, const STRETCHED: bool>(self, a: A) {
+        let Self { kernel, look: ComputePairs { support, lists, points, ellipsoids, first, rows, .. } } =
+            self;
         let itself = kernel.w(0.0);
         let begin = rows.offsets[0];
         let mut batch = NearBatch::NONE;
@@ -138,13 +149,13 @@ impl<K: KernelProfile> HotLoop for PairLoop<'_, '_, K> {
             let own = points[first + k];
             let list = if own.place.0[3] > 0.0 { rows.offsets[k]..rows.offsets[k + 1] } else { 0..0 };
             let slots = rows.offsets[k] - begin..rows.offsets[k] - begin + list.len();
-            let center = Center::new(own.place, support);
+            let center = Center::<A, STRETCHED>::new(a, (first + k, own.place), support, ellipsoids);
             let count = center.find(a, &lists[list], points, &mut rows.neighbors[slots.clone()]);
             let mut sums = NearbySums::ZERO;
             let mut from = slots.start;
             for near in rows.neighbors[slots][..count].chunks(BATCH) {
                 let fours = batch.gather(a, &center, near, points);
-                batch.look_up(&kernel, fours);
+                batch.look_up::<K, STRETCHED>(&kernel, fours);
                 sums.add(a, &batch, fours);
                 let part = from..from + near.len();
                 rows.weights[part.clone()].copy_from_slice(&batch.weights.as_flattened()[..near.len()]);
@@ -190,7 +201,7 @@ impl NearBatch {
 
     /// Evaluates the kernel. By number: a loop over contiguous rows is computed several at once.
     #[inline(always)]
-    fn look_up<K: KernelProfile>(&mut self, kernel: &ScaledKernel<K>, fours: usize) {
+    fn look_up<K: KernelProfile, const STRETCHED: bool>(&mut self, kernel: &ScaledKernel<K>, fours: usize) {
         let distances = self.arms.distances(fours);
         let number = distances.len();
         let weights = &mut self.weights.as_flattened_mut()[..number];
@@ -200,6 +211,14 @@ impl NearBatch {
             weights[n] = kernel.pair_weight(distances[n]);
             values[n] = kernel.w(distances[n]);
             curvatures[n] = kernel.d2w_dr2(distances[n]) as f32;
+        }
+        if STRETCHED {
+            let density = self.arms.densities(number);
+            for n in 0..number {
+                weights[n] *= density[n];
+                values[n] *= density[n];
+                curvatures[n] *= density[n] as f32;
+            }
         }
     }
 }

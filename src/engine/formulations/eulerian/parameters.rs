@@ -17,6 +17,7 @@ use super::rates::{RATES, VelocityGradients};
 use super::rows::{EulerianKernel, EulerianRows, PointColumns};
 use super::separation;
 use super::stress::Stress;
+use super::supports::{SupportMetric, Supports};
 use crate::formulations::bonded::{HeldBody, all_shares, balanced_shares};
 use crate::kernels::{Kernel, KernelName};
 use crate::linalg::Sym3;
@@ -28,8 +29,8 @@ use crate::schedule::{Mode, Stage, System};
 use crate::solids::{AppliedLosses, CORRECTED_STRESS, PACKED_SOLID, SolidBodies, require_support};
 use crate::symmetry::repeats_of;
 use crate::world::{
-    BodyId, BodySet, Column, ColumnSet, DeformationGradient, Force, Mass, PhaseId, PiolaStress, Position,
-    ReferencePosition, ReferenceVolume, Removed, SupportRadius, Velocity,
+    BodyId, BodySet, Column, ColumnSet, Damage, DeformationGradient, Force, Mass, PhaseId, PiolaStress,
+    Position, ReferencePosition, ReferenceVolume, Removed, SupportRadius, Velocity,
 };
 
 /// Solid whose neighbours and kernels are those of the current configuration, for flow, mixing and separation
@@ -41,6 +42,8 @@ pub struct Eulerian {
     pub kernel: KernelName,
     /// Support radius over spacing.
     pub support: f64,
+    /// Whether supports become ellipsoids that follow large deformations, for metal that is upset strongly.
+    pub support_follows: bool,
     /// Divergence operator: force from stress.
     pub divergence: Divergence,
     /// Artificial stress against the tensile instability, for comparison; hourglass control does better.
@@ -56,6 +59,7 @@ impl Default for Eulerian {
         Self {
             kernel: KernelName::CubicSpline,
             support: USUAL_SUPPORT,
+            support_follows: false,
             divergence: Divergence::Adjoint,
             artificial_stress: None,
         }
@@ -97,6 +101,7 @@ impl Formulation for Eulerian {
             .add::<SupportRadius>()
             .add::<DeformationGradient>()
             .add::<PiolaStress>()
+            .add::<SupportMetric>()
             .add::<AppliedLosses>();
     }
 
@@ -120,7 +125,17 @@ impl Formulation for Eulerian {
             let name = &sim.body(*id).name;
             let touches_itself = touching.has(name, name);
             let rows = sim.body(*id).rows.clone();
-            listed.push(EulerianBody { id: *id, rows, support, repeats, touches_itself });
+            let follows = parameters.support_follows;
+            listed.push(EulerianBody {
+                id: *id,
+                rows,
+                support,
+                follows,
+                is_stretched: false,
+                longest: 1.0,
+                repeats,
+                touches_itself,
+            });
         }
         let ids: Vec<BodyId> = bodies.iter().map(|(id, _)| *id).collect();
         let phase = sim.body(ids[0]).phase;
@@ -172,8 +187,12 @@ fn add_systems(phase: PhaseId, stress: Stress, sim: &mut SimBuilder<'_>) {
         .reads_near::<Removed>()
         .reads_near::<Velocity>()
         .reads_near::<DeformationGradient>()
+        .reads_near::<SupportMetric>()
         .writes::<DeformationGradient>()
+        .writes::<SupportMetric>()
         .touches(PACKED_SOLID, Mode::Writes);
+    let can_fail = sim.columns(phase).get(Damage::NAME).is_some();
+    let rates = if can_fail { rates.reads_near::<Damage>() } else { rates };
     let is_dilated = sim.columns(phase).get(DilatationRate::NAME).is_some();
     sim.add_system(if is_dilated { rates.reads::<DilatationRate>() } else { rates });
     let state = stress.access();
@@ -184,6 +203,7 @@ fn add_systems(phase: PhaseId, stress: Stress, sim: &mut SimBuilder<'_>) {
         .reads_near::<Removed>()
         .reads_near::<Velocity>()
         .reads_near::<DeformationGradient>()
+        .reads_near::<SupportMetric>()
         .reads::<Mass>()
         .touches_all(state);
     let has_control = sim.columns(phase).get(HourglassEnergy::NAME).is_some();
@@ -201,6 +221,13 @@ fn add_systems(phase: PhaseId, stress: Stress, sim: &mut SimBuilder<'_>) {
 impl Eulerian {
     fn check(&self, spacing: f64) -> Result<(), SetupError> {
         require_support(self.support, USUAL_SUPPORT, spacing)?;
+        if self.support_follows && self.divergence == Divergence::Shepard {
+            return Err(SetupError::parameter(
+                "support_follows",
+                "`support_follows: true` needs the corrected gradient of `divergence: Adjoint`, found `Shepard`",
+                "leave one of them out",
+            ));
+        }
         self.artificial_stress.map_or(Ok(()), |own| own.check())?;
         Ok(())
     }
@@ -222,11 +249,13 @@ fn set_up(
             support[body.rows.clone()].fill(SupportRadius(body.support));
         }
         view.write::<DeformationGradient>().map_err(missing)?.fill(DeformationGradient(DMat3::IDENTITY));
+        view.write::<SupportMetric>().map_err(missing)?.fill(SupportMetric(Sym3::IDENTITY));
     }
     let mut packed = EulerianRows {
         lists: EulerianLists::new(listed),
         kernels,
         points: Vec::new(),
+        supports: Supports::default(),
         carried: Vec::new(),
         control: EulerianControlRows::default(),
         near: EulerianNeighbors {
@@ -262,12 +291,21 @@ fn set_up(
 
 /// Checks the neighbours of the reference configuration: a body without any has no stiffness.
 fn look_at_reference(packed: &mut EulerianRows, setup: &mut Setup<'_>) -> Result<(), SetupError> {
-    let EulerianRows { lists, kernels, points, near, plane, .. } = packed;
+    let EulerianRows { lists, kernels, points, supports, near, plane, .. } = packed;
     for (body, of) in lists.bodies.iter().zip(kernels) {
         let mut rows = near.of_rows(&lists.pairs, body.rows.clone());
         let (kernel, support, first) = (of.kernel, body.support, body.rows.start);
-        let (lists, plane) = (lists.pairs.indices(), *plane);
-        kernel.dispatch(ComputePairs { kernel, support, lists, points, first, plane, rows: &mut rows });
+        let (lists, ellipsoids, plane) = (lists.pairs.indices(), supports.of(body), *plane);
+        kernel.dispatch(ComputePairs {
+            kernel,
+            support,
+            lists,
+            points,
+            ellipsoids,
+            first,
+            plane,
+            rows: &mut rows,
+        });
         let free = rows.around.iter().filter(|around| around.inverse_moment == Sym3::ZERO).count();
         let name = &setup.world.body(body.id).name;
         if free == rows.around.len() {

@@ -12,7 +12,9 @@ use super::near::{MIN_SPREAD, NeighborRows};
 use super::particle::EulerianParticle;
 use super::rows::{EulerianRows, PointColumns};
 use super::start;
+use super::supports::{self, SupportMetric};
 use super::within::Center;
+use crate::formulations::bonded::SeenEllipsoid;
 use crate::kernels::{Kernel, KernelProfile, KernelVisitor, ProfiledKernel, ScaledKernel};
 use crate::parallel::{
     FourLanes, HotLoop, Lanes4, for_each_own_block, run_hot_on, share_rows, split_by_rows,
@@ -20,7 +22,8 @@ use crate::parallel::{
 use crate::schedule::{Run, Step, StepError};
 use crate::solids::fit;
 use crate::world::{
-    DeformationGradient, PhaseId, Position, ReferencePosition, ReferenceVolume, Removed, Velocity, World,
+    Damage, DeformationGradient, PhaseId, Position, ReferencePosition, ReferenceVolume, Removed, Velocity,
+    World,
 };
 
 /// Label of the system that makes velocity and deformation gradients.
@@ -44,6 +47,9 @@ impl Run for VelocityGradients {
             let volume = view.read_near::<ReferenceVolume>()?;
             start::fit_gradients(&packed, start, place, bytemuck::cast_slice(&volume), &mut deformation);
         }
+        if !packed.supports.is_loaded {
+            packed.load_supports(&view.read_near::<SupportMetric>()?);
+        }
         let velocity = view.read_near::<Velocity>()?;
         let motion: (&[DVec3], f64) = (bytemuck::cast_slice(&velocity), step.clock.dt);
         update_lists(&mut packed, place, start, motion, step.world)?;
@@ -62,6 +68,13 @@ impl Run for VelocityGradients {
             let dilatation =
                 if view.has::<DilatationRate>() { Some(view.read::<DilatationRate>()?) } else { None };
             advance(&mut packed, &mut deformation, dilatation.as_deref(), step.clock.dt);
+            if step.clock.step.is_multiple_of(supports::EVERY) {
+                let damage = if view.has::<Damage>() { Some(view.read_near::<Damage>()?) } else { None };
+                let mut metric = view.write::<SupportMetric>()?;
+                if packed.renew_supports(&mut metric, &deformation, damage.as_deref()) {
+                    update_lists(&mut packed, place, start, motion, step.world)?;
+                }
+            }
         }
         packed.lists.leave_out_elsewhere(place, start, &deformation);
         Ok(())
@@ -89,7 +102,7 @@ fn advance(
     dilatation: Option<&[DilatationRate]>,
     dt: f64,
 ) {
-    let EulerianRows { lists, kernels, points, near, plane, .. } = packed;
+    let EulerianRows { lists, kernels, points, supports, near, plane, .. } = packed;
     for (body, of) in lists.bodies.iter().zip(kernels) {
         let rows = body.rows.clone();
         let own: &mut [DMat3] = bytemuck::cast_slice_mut(&mut deformation[rows.clone()]);
@@ -97,13 +110,14 @@ fn advance(
             AdvancedRows { deformation: &mut *own, near: near.of_rows(&lists.pairs, rows.clone()) };
         for_each_own_block(advanced, &mut Vec::new(), &|first, block: AdvancedRows<'_>| {
             let first = rows.start + first;
-            let (kernel, support) = (of.kernel, body.support);
+            let (kernel, support, ellipsoids) = (of.kernel, body.support, supports.of(body));
             let (lists, points, plane) = (lists.pairs.indices(), &points[..], *plane);
             kernel.dispatch(Advance {
                 kernel,
                 support,
                 lists,
                 points,
+                ellipsoids,
                 first,
                 plane,
                 dilatation,
@@ -131,6 +145,8 @@ struct Advance<'a> {
     /// Lists of all rows.
     lists: &'a [u32],
     points: &'a [EulerianParticle],
+    /// Ellipsoids of all rows; empty where supports are spheres.
+    ellipsoids: &'a [SeenEllipsoid],
     first: usize,
     plane: bool,
     /// Of all rows of the phase, if plugins change volumes.
@@ -158,7 +174,15 @@ impl<K: KernelProfile> HotLoop for AdvanceLoop<'_, K> {
 
     #[inline(always)]
     fn run<A: FourLanes>(self, a: A) {
-        let Self { kernel, of: Advance { support, lists, points, first, dilatation, dt, rows, .. } } = self;
+        if self.of.ellipsoids.is_empty() { self.over::<A, false>(a) } else { self.over::<A, true>(a) }
+    }
+}
+
+impl<K: KernelProfile> AdvanceLoop<'_, K> {
+    #[inline(always)]
+    fn over<A: FourLanes, const STRETCHED: bool>(self, a: A) {
+        let Self { kernel, of } = self;
+        let Advance { support, lists, points, ellipsoids, first, dilatation, dt, rows, .. } = of;
         let AdvancedRows { deformation, near: NeighborRows { offsets, neighbors, .. } } = rows;
         let begin = offsets[0];
         let mut batch = RateBatch::NONE;
@@ -168,14 +192,14 @@ impl<K: KernelProfile> HotLoop for AdvanceLoop<'_, K> {
                 continue;
             }
             let near = &mut neighbors[offsets[k] - begin..offsets[k + 1] - begin];
-            let center = Center::new(own.place, support);
+            let center = Center::<A, STRETCHED>::new(a, (first + k, own.place), support, ellipsoids);
             let count = center.find(a, &lists[offsets[k]..offsets[k + 1]], points, near);
             let [x, y, z, _] = own.velocity.0;
             batch.own = [Lanes4::splat(x), Lanes4::splat(y), Lanes4::splat(z)];
             let mut sums = GradientSums::ZERO;
             for near in near[..count].chunks(BATCH) {
                 let fours = batch.gather(a, &center, near, points);
-                batch.look_up(&kernel, fours);
+                batch.look_up::<K, STRETCHED>(&kernel, fours);
                 sums.add(a, &mut batch, fours);
             }
             let Some(inverse) = sums.moment.sum(a, Lanes4::ZERO).0.inverse_above(MIN_SPREAD) else {
@@ -226,11 +250,17 @@ impl RateBatch {
 
     /// Evaluates the kernel. By number: a loop over contiguous rows is computed several at once.
     #[inline(always)]
-    fn look_up<K: KernelProfile>(&mut self, kernel: &ScaledKernel<K>, fours: usize) {
+    fn look_up<K: KernelProfile, const STRETCHED: bool>(&mut self, kernel: &ScaledKernel<K>, fours: usize) {
         let distances = self.arms.distances(fours);
         let weights = &mut self.weights.as_flattened_mut()[..distances.len()];
         for n in 0..distances.len() {
             weights[n] = kernel.pair_weight(distances[n]);
+        }
+        if STRETCHED {
+            let density = self.arms.densities(weights.len());
+            for n in 0..weights.len() {
+                weights[n] *= density[n];
+            }
         }
     }
 }

@@ -7,11 +7,12 @@ use super::divergence::Divergence;
 use super::lists::EulerianLists;
 use super::near::EulerianNeighbors;
 use super::particle::EulerianParticle;
+use super::supports::{SupportMetric, Supports};
 use crate::kernels::Kernel;
 use crate::parallel::{Lanes4, for_each_block};
 use crate::solids::CorrectedStress;
 use crate::symmetry::Ghost;
-use crate::world::{DeformationGradient, Position, ReferenceVolume, Velocity};
+use crate::world::{Damage, DeformationGradient, Position, ReferenceVolume, Velocity};
 
 /// Kernel and options of the sums of a body.
 #[derive(Clone, Copy)]
@@ -28,6 +29,7 @@ pub(super) struct EulerianRows {
     /// Of every body, as in the lists.
     pub kernels: Vec<EulerianKernel>,
     pub points: Vec<EulerianParticle>,
+    pub supports: Supports,
     /// X, for comparisons with the initial configuration, and data for the control along pairs.
     pub carried: Vec<Carried>,
     pub near: EulerianNeighbors,
@@ -76,8 +78,29 @@ impl EulerianRows {
                 carried.original = Lanes4::new(*x, 0.0);
             }
             self.fill_ghost_carried();
+            self.supports.fill(&self.lists.ghosts);
         }
         Ok(())
+    }
+
+    /// Takes over the supports of the column.
+    pub fn load_supports(&mut self, metric: &[SupportMetric]) {
+        self.supports.load(metric, &mut self.lists.bodies, &self.lists.ghosts);
+    }
+
+    /// Puts other supports into the column where they are due, and says whether they are: they act from the
+    /// stress on, and the lists have to be made anew before.
+    pub fn renew_supports(
+        &mut self,
+        metric: &mut [SupportMetric],
+        deformation: &[DeformationGradient],
+        damage: Option<&[Damage]>,
+    ) -> bool {
+        let is_renewed = self.supports.renew(&mut self.lists.bodies, metric, deformation, damage);
+        if is_renewed {
+            self.lists.forget();
+        }
+        is_renewed
     }
 
     /// Packs the particles where they were `back` seconds ago, ghosts too; the rows that are `gone` have no

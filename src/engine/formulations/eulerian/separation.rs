@@ -6,6 +6,7 @@
 
 use super::lists::EulerianBody;
 use super::rows::EulerianRows;
+use super::supports::length_in;
 use crate::notation::quantity;
 use crate::parallel::sum_over_own_blocks;
 use crate::schedule::{Step, raise_warning};
@@ -37,7 +38,7 @@ pub(super) fn inside(packed: &EulerianRows) -> Vec<bool> {
 /// Offset of the weighted mean of the neighbours of a row over the support radius.
 fn offset(packed: &EulerianRows, body: &EulerianBody, row: usize) -> f64 {
     let around = &packed.near.around[row];
-    around.first_moment.length() / (body.support * around.weight_sum)
+    length_in(packed.supports.ellipsoid(body, row), around.first_moment) / (body.support * around.weight_sum)
 }
 
 /// Whether a row has no neighbour within a cone about the direction away from their mean.

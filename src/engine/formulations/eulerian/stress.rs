@@ -13,6 +13,8 @@ use super::near::{ComputePairs, NearbyMotion, NeighborRows};
 use super::particle::EulerianParticle;
 use super::rows::{EulerianKernel, EulerianRows, PointColumns};
 use super::separation;
+use super::supports::SupportMetric;
+use crate::formulations::bonded::SeenEllipsoid;
 use crate::linalg::Sym3;
 use crate::parallel::{Lanes4, Maximum, split_by_rows, sum_over_blocks};
 use crate::removal::REMOVED_ENERGY;
@@ -24,6 +26,9 @@ use crate::solids::{
 use crate::world::{
     Force, Mass, MissingColumn, PhaseId, PhaseView, Position, ReferenceVolume, Removed, Velocity, World,
 };
+
+/// Account of what changes as supports do.
+const SUPPORT_CHANGE: &str = "support_change";
 
 /// The system.
 pub(super) struct Stress {
@@ -48,8 +53,13 @@ impl Run for Stress {
         self.pack(step.world, &mut packed)?;
         self.pass(step.world, &mut packed, SolidPart::of(step))?;
         self.solids.book(step)?;
+        if packed.lists.bodies.iter().any(|body| body.follows) {
+            // From the first step on, so that it has its place among the energies.
+            step.ledger.account(SUPPORT_CHANGE, AccountKind::Dissipated);
+        }
         let bodies = self.solids.iter().map(|own| own.id);
         self.dilatation.book(self.phase, &packed, bodies, step)?;
+        self.follow(step, &mut packed)?;
         self.update_removed(step, &mut packed)?;
         artificial_stress::write(step.world, self.phase, &packed)?;
         separation::warn(self.phase, &packed, step);
@@ -151,7 +161,18 @@ impl Stress {
         packed: &mut EulerianRows,
     ) {
         let BodyPass { body: k, ref rows, part, .. } = of_body;
-        let EulerianRows { lists, kernels, points, near, deformation, carried, stresses, plane, .. } = packed;
+        let EulerianRows {
+            lists,
+            kernels,
+            points,
+            supports,
+            near,
+            deformation,
+            carried,
+            stresses,
+            plane,
+            ..
+        } = packed;
         let (body, kernel) = (&lists.bodies[k], kernels[k]);
         let own = OwnRows {
             near: near.of_rows(&lists.pairs, rows.clone()),
@@ -164,6 +185,7 @@ impl Stress {
             support: body.support,
             lists: lists.pairs.indices(),
             points,
+            ellipsoids: supports.of(body),
             volume,
             mass,
             shares: &self.shares,
@@ -171,6 +193,21 @@ impl Stress {
             starts: part.dt == 0.0,
         };
         self.solids.run(of_body, columns, own, &|law, rows, own, block| pass.block(law, rows, own, block));
+    }
+
+    /// Goes on to other supports where they are due. The pass runs again at the same places.
+    fn follow(&mut self, step: &mut Step<'_>, packed: &mut EulerianRows) -> Result<(), StepError> {
+        if !packed.supports.is_renewed {
+            return Ok(());
+        }
+        let held = self.solids.stored();
+        let before = self.forces(step.world, packed)?;
+        packed.load_supports(&step.world.phase(self.phase).read_near::<SupportMetric>()?);
+        self.pass(step.world, packed, SolidPart::REPEATED)?;
+        self.solids.book_repeated(step)?;
+        let after = self.forces(step.world, packed)?;
+        let account = step.ledger.account(SUPPORT_CHANGE, AccountKind::Dissipated);
+        self.solids.book_change(step, account, &held, &before, &after)
     }
 
     /// Takes out of the sums what has been removed since the last step. The pass runs twice from the same
@@ -209,20 +246,23 @@ impl Stress {
 
     /// The stable step of each body with the weights that it has now, s.
     fn find_stable_steps(&self, packed: &mut EulerianRows) {
-        let EulerianRows { lists, near, control, stable_step, plane, .. } = packed;
+        let EulerianRows { lists, supports, near, control, stable_step, plane, .. } = packed;
         let axes = if *plane { 2.0 } else { 3.0 };
         stable_step.clear();
         for (own, body) in self.solids.iter().zip(&lists.bodies) {
             let rows = (&near.around[body.rows.clone()], &control.stiffness[body.rows.clone()]);
             type Rows<'a> = (&'a [NearbyMotion], &'a [f64]);
-            let fastest: Maximum = sum_over_blocks(rows, &|_, (around, stiffness): Rows<'_>| {
-                let step = |(of, stiffness): (&NearbyMotion, &f64)| {
-                    let inverse = of.inverse_moment.trace() / axes;
-                    1.0 / own.estimate.stable_step_with_pairs(of.weight_sum, inverse, *stiffness)
+            let fastest: Maximum = sum_over_blocks(rows, &|first, (around, stiffness): Rows<'_>| {
+                let step = |(k, (of, stiffness)): (usize, (&NearbyMotion, &f64))| {
+                    let inverse = &of.inverse_moment;
+                    let trace = match supports.ellipsoid(body, body.rows.start + first + k) {
+                        Some(own) => own.trace(inverse, own.axis_bound()),
+                        None => inverse.trace(),
+                    };
+                    1.0 / own.estimate.stable_step_with_pairs(of.weight_sum, trace / axes, *stiffness)
                 };
-                let with_stress =
-                    around.iter().zip(stiffness).filter(|(of, _)| of.inverse_moment != Sym3::ZERO);
-                Maximum::of(with_stress.map(step))
+                let rows = around.iter().zip(stiffness).enumerate();
+                Maximum::of(rows.filter(|(_, (of, _))| of.inverse_moment != Sym3::ZERO).map(step))
             });
             stable_step.push(1.0 / fastest.0);
         }
@@ -245,6 +285,8 @@ struct StressPass<'a> {
     support: f64,
     lists: &'a [u32],
     points: &'a [EulerianParticle],
+    /// Ellipsoids of all rows; empty where supports are spheres.
+    ellipsoids: &'a [SeenEllipsoid],
     volume: &'a [ReferenceVolume],
     mass: &'a [Mass],
     shares: &'a [f64],
@@ -260,6 +302,13 @@ impl StressPass<'_> {
         if is_fitted { self.shares.get(row).copied().unwrap_or(1.0) } else { 0.0 }
     }
 
+    /// Computes the pairs of the rows of a block.
+    fn find_pairs<'b>(&'b self, first: usize, rows: &mut NeighborRows<'b>) {
+        let Self { support, lists, points, ellipsoids, plane, .. } = *self;
+        let kernel = self.kernel.kernel;
+        kernel.dispatch(ComputePairs { kernel, support, lists, points, ellipsoids, first, plane, rows });
+    }
+
     fn block(
         &self,
         constitutive: &Constitutive<'_>,
@@ -267,11 +316,10 @@ impl StressPass<'_> {
         own: OwnRows<'_>,
         block: &mut SolidBlock,
     ) -> SolidSum {
-        let Self { kernel: EulerianKernel { kernel, divergence, .. }, support, lists, points, plane, .. } =
-            *self;
+        let Self { kernel: EulerianKernel { divergence, .. }, points, .. } = *self;
         let (n, first) = (rows.deformation.len(), block.first);
         let OwnRows { mut near, deformation, carried, stresses } = own;
-        kernel.dispatch(ComputePairs { kernel, support, lists, points, first, plane, rows: &mut near });
+        self.find_pairs(first, &mut near);
         deformation.copy_from_slice(rows.deformation);
         for (k, f) in deformation.iter().enumerate() {
             block.gradient[k] = *f - DMat3::IDENTITY;

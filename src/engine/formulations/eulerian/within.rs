@@ -4,34 +4,37 @@
 //! therefore finds the neighbours within the support, four at once and without a branch.
 
 use super::particle::EulerianParticle;
-use crate::parallel::{FourLanes, Lanes4};
+use crate::formulations::bonded::{OwnEllipsoid, SeenEllipsoid};
+use crate::parallel::{FourLanes, Lanes4, Vector};
 
-/// The particle itself in all lanes.
+/// The particle itself in all lanes; `STRETCHED` where supports are ellipsoids.
 #[derive(Clone, Copy)]
-pub(super) struct Center {
+pub(super) struct Center<'a, A: FourLanes, const STRETCHED: bool> {
     place: [Lanes4; 3],
     /// Its support radius, m.
     pub support: f64,
+    ellipsoid: OwnEllipsoid<A>,
+    ellipsoids: &'a [SeenEllipsoid],
 }
 
-impl Center {
-    /// A particle at `place` with its support radius, m.
+impl<'a, A: FourLanes, const STRETCHED: bool> Center<'a, A, STRETCHED> {
+    /// The particle in `row` at `place` with its support radius, m, and the ellipsoids of all.
     #[inline(always)]
-    pub fn new(place: Lanes4, support: f64) -> Self {
+    pub fn new(a: A, (row, place): (usize, Lanes4), support: f64, ellipsoids: &'a [SeenEllipsoid]) -> Self {
         let [x, y, z, _] = place.0;
-        Self { place: [Lanes4::splat(x), Lanes4::splat(y), Lanes4::splat(z)], support }
+        let own = if STRETCHED { ellipsoids[row] } else { SeenEllipsoid::default() };
+        Self {
+            place: [Lanes4::splat(x), Lanes4::splat(y), Lanes4::splat(z)],
+            support,
+            ellipsoid: OwnEllipsoid::new(a, &own),
+            ellipsoids,
+        }
     }
 
     /// Writes the neighbours in `list` within the support, in their order, to the front of `near`, which is
     /// as long: neither removed particles nor the particle itself. Returns their number.
     #[inline(always)]
-    pub fn find<A: FourLanes>(
-        &self,
-        a: A,
-        list: &[u32],
-        points: &[EulerianParticle],
-        near: &mut [u32],
-    ) -> usize {
+    pub fn find(&self, a: A, list: &[u32], points: &[EulerianParticle], near: &mut [u32]) -> usize {
         let (fours, rest) = list.as_chunks::<4>();
         let mut count = 0;
         // By number, and without closures: these would be called.
@@ -55,16 +58,27 @@ impl Center {
 
     /// A bit for each of four particles that is a neighbour.
     #[inline(always)]
-    fn look<A: FourLanes>(&self, a: A, four: &[u32; 4], points: &[EulerianParticle]) -> usize {
+    fn look(&self, a: A, four: &[u32; 4], points: &[EulerianParticle]) -> usize {
         let (arm, volume) = self.arms(a, places(records(four, points)));
-        let square = square(a, &arm);
+        let square = self.measure(a, four, &arm).0;
         let is_there = a.below(Lanes4::ZERO, square) & a.below(Lanes4::ZERO, volume);
         a.below(square, Lanes4::splat(self.support * self.support)) & is_there
     }
 
+    /// Squares of four distances, m2, and the factors of the kernel.
+    #[inline(always)]
+    pub fn measure(&self, a: A, four: &[u32; 4], arm: &[Lanes4; 3]) -> (Lanes4, Lanes4) {
+        if !STRETCHED {
+            return (square(a, arm), Lanes4::splat(1.0));
+        }
+        let of = four.map(|row| &self.ellipsoids[row as usize]);
+        let seen = self.ellipsoid.measure(a, Vector::new(a, *arm), of);
+        (seen.square.lanes(), seen.density.lanes())
+    }
+
     /// x_ij of four records of places, m, and the volumes in them, m3.
     #[inline(always)]
-    pub fn arms<A: FourLanes>(&self, a: A, places: [Lanes4; 4]) -> ([Lanes4; 3], Lanes4) {
+    pub fn arms(&self, a: A, places: [Lanes4; 4]) -> ([Lanes4; 3], Lanes4) {
         let [x, y, z, volume] = a.transpose(places);
         let z = if A::AXES == 3 { a.sub(z, self.place[2]) } else { Lanes4::ZERO };
         ([a.sub(x, self.place[0]), a.sub(y, self.place[1]), z], volume)
@@ -81,7 +95,7 @@ pub(super) fn filled_up(rest: &[u32]) -> [u32; 4] {
 
 /// Squares of the lengths of four vectors.
 #[inline(always)]
-pub(super) fn square<A: FourLanes>(a: A, [x, y, z]: &[Lanes4; 3]) -> Lanes4 {
+fn square<A: FourLanes>(a: A, [x, y, z]: &[Lanes4; 3]) -> Lanes4 {
     let square = a.mul_add(*y, *y, a.mul(*x, *x));
     if A::AXES == 3 { a.mul_add(*z, *z, square) } else { square }
 }

@@ -4,8 +4,9 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::seen::{Columns, FourSeen, OwnParticle, SeenParticles};
+use super::seen::{Columns, OwnParticle, SeenParticles};
 use crate::correction::{MomentMatrix, add_moment};
+use crate::formulations::bonded::FourSeen;
 use crate::kernels::{KernelProfile, KernelVisitor, ProfiledKernel};
 use crate::linalg::Sym3;
 use crate::neighbors::NeighborList;

@@ -2,9 +2,9 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::formulations::bonded::Ellipsoid;
+use crate::formulations::bonded::{Ellipsoid, FourSeen, OwnEllipsoid, SeenEllipsoid};
 use crate::parallel::{FourLanes, Lanes4, Number, Vector, for_each_block};
-use crate::symmetry::{Ghost, Ghosts};
+use crate::symmetry::Ghosts;
 
 /// All particles, and their ghosts. Loops over positions only read nothing else.
 #[derive(Default)]
@@ -19,32 +19,6 @@ pub(super) struct SeenParticles {
 
 /// The columns of F_r.
 pub(super) type Columns = [Lanes4; 3];
-
-/// Support of a particle.
-#[derive(Clone, Copy, Debug, Default)]
-#[repr(C, align(64))]
-struct SeenEllipsoid {
-    /// Gxx, Gyy, Gzz of the ellipsoid, and the factor of its kernel.
-    stretch: Lanes4,
-    /// Gxy, Gxz, Gyz, and the support radius, m.
-    shear: Lanes4,
-}
-
-impl SeenEllipsoid {
-    fn of(ellipsoid: &Ellipsoid, support: f64) -> Self {
-        let g = &ellipsoid.tensor;
-        Self {
-            stretch: Lanes4([g.xx, g.yy, g.zz, ellipsoid.density]),
-            shear: Lanes4([g.xy, g.xz, g.yz, support]),
-        }
-    }
-
-    fn image(&self, ghost: &Ghost<'_>) -> Self {
-        let DVec3 { x, y, z } = ghost.map.signs;
-        let [xy, xz, yz, support] = self.shear.0;
-        Self { stretch: self.stretch, shear: Lanes4([x * y * xy, x * z * xz, y * z * yz, support]) }
-    }
-}
 
 impl SeenParticles {
     /// Fills the rows of all particles at these places, m, with these volumes, m3, and support radii, m, and
@@ -66,7 +40,7 @@ impl SeenParticles {
                 *own = SeenEllipsoid::of(&ellipsoids[row], support[row]);
             }
         });
-        ghosts.fill(&mut self.ellipsoids, |ghost, own| own.image(&ghost));
+        ghosts.fill(&mut self.ellipsoids, |ghost, own| own.image(ghost.map.signs));
         self.shifts.clear();
         if !ghosts.is_empty() {
             self.shifts.resize(all, Lanes4::ZERO);
@@ -111,31 +85,17 @@ pub(super) fn fill_columns(
 #[derive(Clone, Copy)]
 pub(super) struct OwnParticle<A: FourLanes> {
     place: Vector<A>,
-    stretch: [Number<A>; 4],
-    shear: [Number<A>; 4],
+    ellipsoid: OwnEllipsoid<A>,
     columns: [Vector<A>; 3],
-}
-
-/// Four pairs.
-#[derive(Clone, Copy)]
-pub(super) struct FourSeen<A: FourLanes> {
-    /// Square of the distance as both measure it, m2.
-    pub square: Number<A>,
-    /// Factor of the kernel.
-    pub density: Number<A>,
-    /// Mean support radius, m.
-    pub support: Number<A>,
 }
 
 impl<A: FourLanes> OwnParticle<A> {
     /// That of a row.
     #[inline(always)]
     pub fn new(a: A, seen: &SeenParticles, row: usize) -> Self {
-        let ellipsoid = &seen.ellipsoids[row];
         Self {
             place: vector(a, seen.places[row]),
-            stretch: numbers(a, ellipsoid.stretch),
-            shear: numbers(a, ellipsoid.shear),
+            ellipsoid: OwnEllipsoid::new(a, &seen.ellipsoids[row]),
             columns: [Vector::zero(a); 3],
         }
     }
@@ -183,23 +143,7 @@ impl<A: FourLanes> OwnParticle<A> {
     #[inline(always)]
     pub fn measure(&self, a: A, r: Vector<A>, seen: &SeenParticles, [j, k, l, m]: [usize; 4]) -> FourSeen<A> {
         let of = &seen.ellipsoids[..];
-        let of = [&of[j], &of[k], &of[l], &of[m]];
-        let [xx, yy, zz, density] = a.transpose([of[0].stretch, of[1].stretch, of[2].stretch, of[3].stretch]);
-        let [xy, xz, yz, support] = a.transpose([of[0].shear, of[1].shear, of[2].shear, of[3].shear]);
-        let ([own_xx, own_yy, own_zz, own_density], [own_xy, own_xz, own_yz, own_support]) =
-            (self.stretch, self.shear);
-        let shear = sum(a, own_xy, xy);
-        let mut twice =
-            sum(a, own_xx, xx) * r.x * r.x + sum(a, own_yy, yy) * r.y * r.y + 2.0 * shear * r.x * r.y;
-        if A::AXES == 3 {
-            let shears = sum(a, own_xz, xz) * r.x + sum(a, own_yz, yz) * r.y;
-            twice += (sum(a, own_zz, zz) * r.z + 2.0 * shears) * r.z;
-        }
-        FourSeen {
-            square: twice * 0.5,
-            density: sum(a, own_density, density) * 0.5,
-            support: sum(a, own_support, support) * 0.5,
-        }
+        self.ellipsoid.measure(a, r, [&of[j], &of[k], &of[l], &of[m]])
     }
 }
 
@@ -207,15 +151,4 @@ impl<A: FourLanes> OwnParticle<A> {
 #[inline(always)]
 fn vector<A: FourLanes>(a: A, of: Lanes4) -> Vector<A> {
     Vector::splat(a, of.xyz())
-}
-
-/// Each lane in all lanes of a number.
-#[inline(always)]
-fn numbers<A: FourLanes>(a: A, Lanes4([x, y, z, w]): Lanes4) -> [Number<A>; 4] {
-    [Number::splat(a, x), Number::splat(a, y), Number::splat(a, z), Number::splat(a, w)]
-}
-
-#[inline(always)]
-fn sum<A: FourLanes>(a: A, own: Number<A>, other: Lanes4) -> Number<A> {
-    own + Number::new(a, other)
 }
