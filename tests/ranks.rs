@@ -5,6 +5,7 @@ mod common;
 mod threads;
 
 use common::coupled::coupled;
+use common::eulerian::{FOLLOWING, UPSET, block};
 use common::thin::{thin, torn};
 use common::touching::{large_rigid_bodies, tool_of_triangles, touching};
 use common::wearing::wearing;
@@ -92,6 +93,8 @@ fn eulerian_solids() {
     assert_equal_bits("three dimensions", &eulerian(&all_plugins(3)), 20);
     assert_equal_bits("metals", &eulerian(&metals()), 20);
     assert_equal_bits("failing", &eulerian(&failing()), 60);
+    let upset = block(3, FOLLOWING, UPSET[1], "plugins: [hourglass_control()],");
+    assert_equal_bits("supports that follow", &upset, 60);
 }
 
 #[test]
