@@ -359,7 +359,7 @@ impl Simulation {
         self.schedule.run(&mut step, wanted)
     }
 
-    fn run_short_stages(&mut self, wanted: impl Fn(Stage) -> bool) -> Result<(), StepError> {
+    fn run_short_stages(&mut self, last: bool, wanted: impl Fn(Stage) -> bool) -> Result<(), StepError> {
         let SubSteps { phases, state, long, .. } = &mut self.sub_steps;
         let mut step = Step {
             world: &self.world,
@@ -368,7 +368,7 @@ impl Simulation {
             ledger: &mut self.ledger,
             limits: &mut state.limits,
             warnings: &mut self.warnings,
-            part: StepPart::short(phases, *long, state.total),
+            part: StepPart::short(phases, *long, last, state.total),
             stop: &mut self.stop,
         };
         self.schedule.run(&mut step, wanted)

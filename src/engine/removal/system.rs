@@ -4,6 +4,10 @@
 //! are zero, mass and volume stay for the energy balance. Formulations, contacts and conditions leave such
 //! rows out. Its kinetic energy goes to the account `removed`, and so does the energy of its bonds and
 //! contacts, which formulation and contact book.
+//!
+//! Bodies that take sub-steps lose particles in the last of a long step: what computes their forces then
+//! sees all of them at the same time, with those that go and without them, and a flow sees the losses at the
+//! end of its step.
 
 use glam::DVec3;
 
@@ -16,7 +20,9 @@ use crate::plugin::SimBuilder;
 use crate::rigid::{RIGID_BODIES, take_out};
 use crate::scene::Outside;
 use crate::schedule::{Access, AccountKind, Mode, REMOVED_ENERGY, Run, Stage, Step, StepError, System};
-use crate::world::{BodyId, Force, Mass, Mobility, PhaseView, Position, Removed, Velocity, sum_by_row};
+use crate::world::{
+    BodyId, BodySet, Force, Mass, Mobility, PhaseView, Position, Removed, Velocity, sum_by_row,
+};
 
 /// Label of the system of stage [`Stage::Neighbors`] that removes particles. It is always there: lists of
 /// neighbours are made `.after(REMOVAL)`.
@@ -36,9 +42,13 @@ pub fn add_system(sim: &mut SimBuilder<'_>) {
     if let Some(domain) = DomainBox::of_scene(sim).filter(|domain| domain.outside == Outside::Remove) {
         rules.push(Box::new(RemoveOutside::new(domain)));
     }
+    let phases = sim.phases_of(&BodySet::new(sim.bodies().iter().map(|body| body.id)));
+    let gravity = sim.gravity();
     let columns: Vec<Access> = rules.iter().flat_map(|rule| rule.access()).collect();
     sim.add_system(
-        System::new(Stage::Neighbors, REMOVAL, Removal { rules, rows: Vec::new() })
+        System::new(Stage::Neighbors, REMOVAL, Removal { rules, gravity, rows: Vec::new() })
+            .on_phases(phases)
+            .by_body()
             .touches_all(columns)
             .reads::<Position>()
             .reads::<Mass>()
@@ -53,6 +63,7 @@ pub fn add_system(sim: &mut SimBuilder<'_>) {
 
 struct Removal {
     rules: Vec<Box<dyn RemovalRule>>,
+    gravity: DVec3,
     rows: Vec<u32>,
 }
 
@@ -63,13 +74,19 @@ impl Run for Removal {
             step.ledger.account(REMOVED_ENERGY, AccountKind::Dissipated);
         }
         leaving_of_phases(step, LeavingParticles::clear);
+        if !step.part.is_last() {
+            return Ok(());
+        }
         for rule in &mut self.rules {
             for body in (0..step.world.bodies().len()).map(BodyId) {
+                if !step.part.is_due(step.world, body) {
+                    continue;
+                }
                 self.rows.clear();
                 rule.rows(step, body, &mut self.rows)?;
                 if !self.rows.is_empty() {
                     keep_present(step, body, &mut self.rows)?;
-                    remove(step, body, &self.rows)?;
+                    remove(step, body, &self.rows, self.gravity)?;
                 }
             }
         }
@@ -78,9 +95,9 @@ impl Run for Removal {
     }
 }
 
-/// Changes the list of what leaves of every phase that has one.
+/// Changes the list of what leaves of every phase that has one and moves in this part of the step.
 fn leaving_of_phases(step: &Step<'_>, change: impl Fn(&mut LeavingParticles)) {
-    for phase in step.world.phases() {
+    for phase in step.world.phases().filter(|&phase| step.part.moves(phase)) {
         if let Some(mut leaving) = step.resources.try_get_mut_of::<LeavingParticles>(phase) {
             change(&mut leaving);
         }
@@ -97,31 +114,30 @@ fn keep_present(step: &Step<'_>, body: BodyId, rows: &mut Vec<u32>) -> Result<()
 }
 
 /// Removes rows of a body, ascending, that are there.
-fn remove(step: &mut Step<'_>, body: BodyId, rows: &[u32]) -> Result<(), StepError> {
+fn remove(step: &mut Step<'_>, body: BodyId, rows: &[u32], gravity: DVec3) -> Result<(), StepError> {
     if rows.is_empty() {
         return Ok(());
     }
     let (view, own) = step.world.body_view(body);
-    let due = step.part.is_due(step.world, body);
     let mut leaving = step.resources.try_get_mut_of::<LeavingParticles>(step.world.body(body).phase);
     let kinetic = {
         let (velocity, force) = (view.read::<Velocity>()?, view.read::<Force>()?);
         let (mobility, mass) = (view.read::<Mobility>()?, view.read::<Mass>()?);
         let (velocity, force, mobility, mass) = (&velocity[..], &force[..], &mobility[..], &mass[..]);
-        if let Some(leaving) = leaving.as_mut().filter(|_| due) {
+        if let Some(leaving) = leaving.as_mut() {
             rows.iter().for_each(|&row| leaving.push(row, velocity[row as usize].0));
         }
         // The last kick is that of forces which are only made after they have gone. The system that computes
-        // them books what it would take from the motion, if they ask who leaves.
+        // them books what it would take from the motion, if they ask who leaves; the work of gravity is
+        // booked already.
         let kick_takes = leaving.is_none();
         let half_step = 0.5 * step.clock.dt;
         sum_by_row(own.len(), rows.len(), &|k| rows[k] as usize - own.start, &|k| {
             let row = rows[k] as usize;
-            // The velocity is that of mid-step, the account of kinetic energy is taken at its end; bodies
-            // that take sub-steps are there.
+            // The velocity is that of mid-step, the account of kinetic energy is taken at its end.
             let v = velocity[row].0;
-            let kick = if due { half_step * (force[row].0 * mobility[row].0) } else { DVec3::ZERO };
-            let power = if kick_takes { 2.0 * v.dot(kick) } else { 0.0 };
+            let kick = half_step * (force[row].0 * mobility[row].0);
+            let power = 2.0 * v.dot(if kick_takes { kick } else { half_step * gravity });
             0.5 * mass[row].0 * (v.length_squared() + kick.length_squared() + power)
         })
     };
@@ -136,10 +152,6 @@ fn remove(step: &mut Step<'_>, body: BodyId, rows: &[u32]) -> Result<(), StepErr
     }
     let account = step.ledger.account(REMOVED_ENERGY, AccountKind::Dissipated);
     step.ledger.add(account, body, kinetic);
-    if !due {
-        let held = step.ledger.account("kinetic", AccountKind::Stored);
-        step.ledger.add(held, body, -kinetic);
-    }
     Ok(())
 }
 

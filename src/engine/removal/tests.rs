@@ -75,6 +75,17 @@ fn a_block_that_drifts_out_of_the_domain_leaves_column_by_column_and_feels_nothi
     assert!(sim.ledger().relative_error().abs() < 1e-12, "{}", sim.ledger().relative_error());
 }
 
+/// The whole step of gravity is booked before a particle leaves: with its kinetic energy at mid-step half of
+/// that was lost.
+#[test]
+fn the_books_close_exactly_when_what_falls_freely_leaves() {
+    let scene = "gravity: (30.0, 0.0), conditions: [InitialVelocity(on: Select(body: \"block\"), value: (\"2.0\", \"0.5\"))], time: (end: 0.025),";
+    let mut sim = block(&format!("{DOMAIN} {scene}"));
+    sim.run(|_| true).unwrap();
+    assert!((4..28).contains(&sim.summary().removed_of["block"]));
+    assert!(sim.ledger().relative_error().abs() < 1e-12, "{}", sim.ledger().relative_error());
+}
+
 #[test]
 fn the_books_close_when_strained_particles_leave() {
     // It stretches and turns while it leaves: what the cut bonds held goes with the particles.

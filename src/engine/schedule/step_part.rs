@@ -20,6 +20,7 @@ pub struct StepPart<'s> {
     short: bool,
     long: Option<f64>,
     divided: bool,
+    last: bool,
     number: u64,
     sub_cycled: &'s [PhaseId],
 }
@@ -28,13 +29,13 @@ impl<'s> StepPart<'s> {
     /// The long step of this number, `divided` into several sub-steps or not; without sub-cycled phases, the
     /// whole of the step.
     pub fn long(sub_cycled: &'s [PhaseId], divided: bool, number: u64) -> Self {
-        Self { short: false, long: None, divided, number, sub_cycled }
+        Self { short: false, long: None, divided, last: true, number, sub_cycled }
     }
 
     /// The sub-step of this number since time 0; `long` is the length of the long step, s, where there are
-    /// others in it.
-    pub fn short(sub_cycled: &'s [PhaseId], long: Option<f64>, number: u64) -> Self {
-        Self { short: true, long, divided: long.is_some(), number, sub_cycled }
+    /// others in it, of which this is the `last` one or not.
+    pub fn short(sub_cycled: &'s [PhaseId], long: Option<f64>, last: bool, number: u64) -> Self {
+        Self { short: true, long, divided: long.is_some(), last, number, sub_cycled }
     }
 
     /// Number of steps done before this one by the clock of this part of the step: sub-steps by that of
@@ -53,9 +54,19 @@ impl<'s> StepPart<'s> {
         self.divided
     }
 
+    /// Whether it ends the long step for what moves in it: the last sub-step does, and the long step itself.
+    pub fn is_last(self) -> bool {
+        self.last
+    }
+
+    /// Whether the bodies of a phase move in this part of the step.
+    pub fn moves(self, phase: PhaseId) -> bool {
+        self.sub_cycled.contains(&phase) == self.short
+    }
+
     /// Whether the body moves in this part of the step.
     pub fn is_due(self, world: &World, body: BodyId) -> bool {
-        self.sub_cycled.contains(&world.body(body).phase) == self.short
+        self.moves(world.body(body).phase)
     }
 
     /// The bodies of a set that move in this part of the step.

@@ -97,7 +97,7 @@ impl Simulation {
             let is_divided = count > 1.0 || self.sub_steps.state.last > 0;
             self.sub_steps.long = is_divided.then_some(long.dt);
             self.clock = Clock { time: long.time + (long.dt - rest), dt, step: long.step };
-            self.run_short_stages(|stage| stage != Stage::Record)?;
+            self.run_short_stages(count <= 1.0, |stage| stage != Stage::Record)?;
             self.sub_steps.take_limit();
             self.sub_steps.state.last += 1;
             self.sub_steps.state.total += 1;
@@ -113,7 +113,9 @@ impl Simulation {
     /// Evaluates the short side at the start.
     pub(super) fn start_short_steps(&mut self) -> Result<(), RunError> {
         if !self.sub_steps.phases.is_empty() {
-            self.run_short_stages(|stage| stage.is_right_hand_side() || stage == Stage::FinalIntegrate)?;
+            self.run_short_stages(true, |stage| {
+                stage.is_right_hand_side() || stage == Stage::FinalIntegrate
+            })?;
             self.sub_steps.take_limit();
         }
         Ok(())

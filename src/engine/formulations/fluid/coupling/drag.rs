@@ -17,8 +17,9 @@ use hecs::ArchetypeColumnMut;
 
 use crate::parallel::{for_each_block, split_by_rows};
 use crate::plugin::SimBuilder;
-use crate::schedule::{Run, Stage, Step, StepError, System};
-use crate::world::{BodySet, Force, MissingColumn, PhaseId, PhaseView, Velocity};
+use crate::removal::{LEAVING, LeavingParticles};
+use crate::schedule::{Mode, Run, Stage, Step, StepError, System};
+use crate::world::{BodySet, Force, MissingColumn, PhaseId, PhaseView, Removed, Velocity};
 
 crate::column! {
     /// How fast friction grows with the velocity of the particle.
@@ -52,6 +53,8 @@ pub fn add(sim: &mut SimBuilder<'_>, bodies: &BodySet, phase: PhaseId, label: &s
         System::new(Stage::External, format!("{label}_drag"), Drag { bodies: bodies.clone() })
             .on_phases([phase])
             .reads::<Velocity>()
+            .reads::<Removed>()
+            .touches(LEAVING, Mode::Reads)
             .adds::<Force>(),
     ));
 }
@@ -115,7 +118,7 @@ pub struct Drag {
     pub bodies: BodySet,
 }
 
-type Rows<'a> = (&'a mut [Force], &'a [Velocity], DragRows<'a>);
+type Rows<'a> = (&'a mut [Force], (&'a [Velocity], &'a [Removed]), DragRows<'a>);
 
 impl Run for Drag {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
@@ -127,15 +130,27 @@ impl Run for Drag {
         for body in step.part.due(step.world, &self.bodies) {
             let (view, rows) = step.world.body_view(body);
             let (mut force, velocity) = (view.write::<Force>()?, view.read::<Velocity>()?);
+            let removed = view.read::<Removed>()?;
+            let leaving = step.resources.try_get_of::<LeavingParticles>(step.world.body(body).phase);
+            let leaving = leaving.as_deref();
             let mut columns = DragColumns::new(&view)?;
             let columns = columns.rows(rows.clone());
-            let rows = (&mut force[rows.clone()], &velocity[rows], columns);
-            for_each_block(rows, &mut Vec::new(), &|_, (force, velocity, rows): Rows<'_>| {
+            let own = (&velocity[rows.clone()], &removed[rows.clone()]);
+            let first_row = rows.start;
+            let rows = (&mut force[rows], own, columns);
+            for_each_block(rows, &mut Vec::new(), &|first, (force, (velocity, removed), rows): Rows<'_>| {
                 for k in 0..force.len() {
-                    let now = -rows.drag[k].0 * (velocity[k].0 - rows.motion[k].0);
+                    let mut velocity = velocity[k].0;
+                    let mut now = -rows.drag[k].0 * (velocity - rows.motion[k].0);
+                    if removed[k] != Removed::NO {
+                        // What goes in this step has had the first kick of it.
+                        let row = first_row + first + k;
+                        velocity = leaving.map_or(DVec3::ZERO, |leaving| leaving.velocity(row));
+                        now = DVec3::ZERO;
+                    }
                     let kicks = half * (rows.damping[k].0 + now);
                     rows.impulse[k].0 += kicks;
-                    rows.work[k].0 += kicks.dot(velocity[k].0);
+                    rows.work[k].0 += kicks.dot(velocity);
                     rows.damping[k].0 = now;
                     force[k].0 += now;
                 }

@@ -12,6 +12,7 @@ use super::correction_impulse::{ParticleRows, Particles, give_to_rigid_body};
 use super::drag;
 use super::drag::DragColumns;
 use super::exchange::{CouplingForce, CouplingFriction, CouplingPressure, Exchange};
+use super::frozen;
 use super::light_body::WetSurface;
 use super::sub_cycled::limits_of_long_step;
 use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud, FluidState, Group, PARTS, PLACES_BEFORE, Role};
@@ -23,7 +24,7 @@ use crate::parallel::{Lanes4, for_each_block};
 use crate::plugin::SimBuilder;
 use crate::removal::REMOVED_ENERGY;
 use crate::rigid::{RIGID_BODIES, RigidBodies, RigidBody};
-use crate::schedule::{AccountKind, Adds, Mode, Run, Stage, Step, StepError, System};
+use crate::schedule::{AccountKind, Mode, Run, Stage, Step, StepError, System};
 use crate::world::{BodyId, BodySet, Force, Mass, Mobility, PhaseId, Position, Removed, Velocity};
 
 /// Adds the systems for one phase of bodies beside the flow: their contributions come after the weight of the
@@ -49,15 +50,7 @@ pub fn add_force_on_bodies(
         .reads::<Position>()
         .in_long_steps(),
     );
-    sim.add_system(
-        System::each::<(Adds<Force>, &CouplingForce)>(
-            Stage::External,
-            format!("{label}_frozen"),
-            bodies.clone(),
-            |_, (force, coupling)| force.0 += coupling.0,
-        )
-        .on_phases([phase]),
-    );
+    frozen::add(sim, &bodies, phase, label);
     if follows {
         drag::add(sim, &bodies, phase, label);
     }

@@ -8,6 +8,8 @@ mod correction_impulse;
 
 mod force_on_bodies;
 
+mod frozen;
+
 mod light_body;
 
 mod sub_cycled;

@@ -116,3 +116,36 @@ fn friction_with_a_strip_in_short_steps_takes_energy() {
     assert!(ledger.relative_error().abs() < 1e-2, "energy is off by {}", ledger.relative_error());
     assert!(ledger.total_named("kinetic") < start, "{} of {start} J", ledger.total_named("kinetic"));
 }
+
+/// A disc free of stress that leaves the domain, with a fluid far away: it loses nothing but the kinetic
+/// energy of what leaves. The leaving particles stopped while their neighbours drifted on for a sub-step, and
+/// the strain that this made went to the damping of the sub-steps, or was lost.
+#[test]
+fn a_body_that_leaves_the_domain_in_sub_steps_takes_its_kinetic_energy_along_and_no_more() {
+    for formulation in ["TotalLagrangian", "UpdatedLagrangian", "Eulerian"] {
+        let mut sim = simulation(&format!(
+            r#"(dimension: Two, domain: (min: (-1, -0.2), max: (3, 1), outside: Remove),
+                materials: {{"water": Fluid(density: 1000, sound_speed: 20),
+                            "rubber": NeoHookean(density: 500, young: 1e6, poisson: 0.3)}},
+                bodies: [
+                    (name: "water", material: "water", shape: Box(min: (2, 0), max: (2.1, 0.1)), spacing: 0.01, formulation: Fluid),
+                    (name: "disc", material: "rubber", shape: Sphere(center: (0, 0), radius: 0.1), spacing: 0.01,
+                     velocity: (1, -4), formulation: {formulation}),
+                ],
+                time: (end: 0.06))"#
+        ));
+        sim.start().expect("a start");
+        let before = sim.ledger().total_named("kinetic");
+        sim.run(|_| true).expect("a run");
+        let (short, long) = (sim.sub_steps().map_or(0, |steps| steps.1), sim.clock().step);
+        assert!(short > 2 * long, "{short} sub-steps in {long}");
+        let ledger = sim.ledger();
+        let of = |name: &str| ledger.total_named(name) / before;
+        assert!((0.5..0.9).contains(&of("removed")), "{formulation}: {} is removed", of("removed"));
+        let lost = 1.0 - of("removed") - of("kinetic");
+        assert!(lost.abs() < 1e-9, "{formulation}: {lost} is lost");
+        assert!(of("coupling_damping").abs() < 1e-9, "{formulation}: {} is damped", of("coupling_damping"));
+        assert!(of("reference_update").abs() < 1e-9, "{formulation}: {}", of("reference_update"));
+        assert!(ledger.relative_error().abs() < 1e-9, "{formulation}: {}", ledger.relative_error());
+    }
+}
