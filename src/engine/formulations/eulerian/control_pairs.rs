@@ -30,7 +30,8 @@ pub(super) struct ControlRowSums {
     pub force: DVec3,
     /// dU/dF.
     pub couple: DMat3,
-    /// The torque with which U turns the ellipsoid: its force along normals has one, which this takes back.
+    /// Half of the torque of the forces along normals of the ellipsoid, which come from the weights; a stress
+    /// that turns with the ellipsoid balances it.
     pub turn: DVec3,
     pub stiffness: f64,
     /// Four times the energies, with the moduli of now and of the last step.
@@ -52,7 +53,7 @@ struct OwnControl<A: FourLanes> {
 struct ControlSums<A: FourLanes> {
     force: Vector<A>,
     couple: [Vector<A>; 3],
-    /// Four times the couple of the ellipsoid.
+    /// Four times [`ControlRowSums::turn`].
     turn: [Number<A>; 3],
     stiffness: Number<A>,
     energy: Number<A>,
@@ -123,12 +124,15 @@ impl ControlPairs<'_> {
         let force = total(a, sums.force, sums.stiffness);
         let [x, y, z] = sums.couple;
         let (x, y, z) = (total(a, x, sums.energy), total(a, y, sums.energy_before), total(a, z, none));
-        let [along_x, along_y, along_z] = sums.turn.map(Number::lanes);
-        let turn = a.sums([along_x, along_y, along_z, none.lanes()]).xyz();
+        let mut turn = DVec3::ZERO;
+        if STRETCHED {
+            let [along_x, along_y, along_z] = sums.turn.map(Number::lanes);
+            turn = a.sums([along_x, along_y, along_z, none.lanes()]).xyz() * 0.25;
+        }
         ControlRowSums {
             force: force.xyz(),
             couple: DMat3::from_cols(x.xyz(), y.xyz(), z.xyz()),
-            turn: turn * 0.25,
+            turn,
             stiffness: force.0[3],
             energy: x.0[3],
             energy_before: y.0[3],
@@ -264,8 +268,8 @@ impl ControlPairs<'_> {
 }
 
 impl<A: FourLanes> ControlSums<A> {
-    /// Adds a multiple of the vector product of two vectors to the couple of the ellipsoid. That of vectors
-    /// in a plane is across it.
+    /// Adds a multiple of the vector product of two vectors to what turns the ellipsoid. In a plane it has
+    /// one component, across the plane.
     #[inline(always)]
     fn add_turn(&mut self, v: Vector<A>, w: Vector<A>, times: Number<A>) {
         if A::AXES == 3 {

@@ -57,16 +57,17 @@ impl Supports {
     /// Takes over what the column holds.
     pub fn load(&mut self, metric: &[SupportMetric], bodies: &mut [EulerianBody], ghosts: &Ghosts) {
         (self.is_loaded, self.is_renewed) = (true, false);
-        for body in &mut *bodies {
-            let of_body = &metric[body.rows.clone()];
-            body.is_stretched = of_body.iter().any(|own| own.0 != Sym3::IDENTITY);
-            body.longest = longest(of_body);
-        }
         self.own.clear();
         self.seen.clear();
-        if bodies.iter().any(|body| body.is_stretched) {
+        if metric.iter().any(|own| own.0 != Sym3::IDENTITY) {
             self.own.extend(metric.iter().map(|own| Ellipsoid::new(own.0)));
             self.fill(ghosts);
+        }
+        for body in bodies {
+            let rows = body.rows.clone();
+            body.is_stretched = metric[rows.clone()].iter().any(|own| own.0 != Sym3::IDENTITY);
+            let axes = self.own.get(rows).unwrap_or_default().iter().map(|own| own.longest);
+            body.longest = axes.fold(1.0, f64::max);
         }
     }
 
