@@ -13,13 +13,16 @@ use meshless::world::{BodyId, Damage};
 
 const SPACING: f64 = 0.05;
 
-/// V_0,j w_ij and x_ij of the neighbours of particle `i`.
+/// V_0,j w_ij and x_ij of the neighbours of particle `i`, by the ellipsoids of both.
 fn pairs(all: &[Particle], i: usize) -> impl Iterator<Item = (usize, f64, DVec3)> {
     let kernel = Kernel::new(KernelName::CubicSpline, 2).expect("a kernel");
     let h = kernel.smoothing_length(2.6 * SPACING);
     (0..all.len()).filter(move |&j| j != i).map(move |j| {
         let x_ij = all[j].x - all[i].x;
-        (j, all[j].volume * kernel.pair_weight(x_ij.length(), h), x_ij)
+        let mean = |of: &dyn Fn(&Particle) -> f64| 0.5 * (of(&all[i]) + of(&all[j]));
+        let square = mean(&|own| x_ij.dot(own.metric.to_matrix() * x_ij));
+        let weight = mean(&|own| own.metric.determinant().sqrt()) * kernel.pair_weight(square.sqrt(), h);
+        (j, all[j].volume * weight, x_ij)
     })
 }
 

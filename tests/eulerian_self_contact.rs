@@ -134,7 +134,8 @@ fn a_strip_of_metal_that_folds_onto_its_workpiece_rebounds_as_a_lagrangian_one()
     // The strip is 0.6 m long.
     let difference = most(&found, &lagrangian);
     assert!(difference < 0.04, "{difference}: {found:?} {lagrangian:?}");
-    assert!(most(&joined, &lagrangian) > 0.07, "without contact it joins: {joined:?}");
+    let without = most(&joined, &lagrangian);
+    assert!(without > 1.5 * difference, "without contact it joins: {without} and {difference}, {joined:?}");
     assert!(least > 0.014, "the strip enters the block: {least}");
     assert!(error < 2e-3, "{error}");
 }

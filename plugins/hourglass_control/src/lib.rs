@@ -18,7 +18,7 @@ use cracks::{OnIntactBonds, add_off_cracks, can_fail};
 use eulerian::Elastic;
 use ganzenmueller_2015::Ganzenmueller2015;
 use meshless_engine::materials::ParameterError;
-use meshless_engine::plugin::{BodyKind, Offer, Plugin, Registry, SetupError, SimBuilder};
+use meshless_engine::plugin::{BodyKind, Distances, Offer, Plugin, Registry, SetupError, SimBuilder};
 use meshless_engine::solids::{FoldedTerm, FoldedTermOfBodies};
 use meshless_engine::world::{
     BodyId, BodySet, ColumnSet, DeformationGradient, HourglassGradient, HourglassModulus, HourglassResidual,
@@ -72,7 +72,8 @@ impl Default for HourglassControl {
 /// Forms of the control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 pub enum Form {
-    /// `Variational`; `Combined` in Eulerian bodies whose material flows plastically.
+    /// `Variational`; `Combined` in Eulerian bodies whose material flows plastically and whose supports are
+    /// spheres.
     Default,
     /// The exact gradient of an energy: of the whole residual vector, with the weights of the deformation
     /// gradient, in Lagrangian bodies; of the residual along the bond and a tenth of that across it, with the
@@ -142,6 +143,11 @@ fn flows(id: BodyId, sim: &SimBuilder<'_>) -> Result<bool, SetupError> {
     Ok(sim.body(id).solid_law()?.initial_yield_stress().is_some())
 }
 
+/// Whether the supports of a body follow its deformation.
+fn follows(id: BodyId, sim: &SimBuilder<'_>) -> bool {
+    sim.body(id).distances == Distances::HalfWay
+}
+
 /// The bodies that take terms which fold into the internal force, and those that take pair terms alone: their
 /// weights are not those of a reference.
 fn split(sim: &SimBuilder<'_>) -> Result<(BodySet, BodySet), SetupError> {
@@ -169,7 +175,8 @@ impl HourglassControl {
     /// The form of an Eulerian body, or of a Lagrangian one.
     fn form_of(&self, id: BodyId, is_eulerian: bool, sim: &SimBuilder<'_>) -> Result<Form, SetupError> {
         Ok(match self.form {
-            Form::Default if is_eulerian && flows(id, sim)? => Form::Combined,
+            // Where supports follow a plastic flow, the energy alone holds neighbours together.
+            Form::Default if is_eulerian && !follows(id, sim) && flows(id, sim)? => Form::Combined,
             Form::Default => Form::Variational,
             form => form,
         })

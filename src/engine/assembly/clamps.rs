@@ -6,7 +6,7 @@
 
 use crate::neighbors::{Cloud, NeighborList, NeighborSearch, Periodic};
 use crate::notation::quantity;
-use crate::plugin::{BodyKind, BodyPlan, Offer, Registry, SimBuilder};
+use crate::plugin::{BodyKind, BodyPlan, Distances, Registry, SimBuilder};
 use crate::scene::{Edge, Scene};
 
 /// Warns of every body that is held and nowhere thick enough: along all axes, or by `Fix` within a shape
@@ -43,7 +43,7 @@ pub(super) fn warn(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>)
 
 /// The kernel support of a body whose particles are held nowhere as thick as it, m.
 fn thin_support(body: &BodyPlan, held: &[bool]) -> Option<f64> {
-    let reach = body.support.filter(|_| body.offers(Offer::PairControl))?;
+    let reach = body.support.filter(|_| body.distances != Distances::Reference)?;
     let of = |is_held: bool| -> Vec<_> {
         let own = body.sites.iter().zip(held).filter(|(_, held)| **held == is_held);
         own.map(|(site, _)| site.position).collect()

@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::{memory, spawn};
 use crate::materials::{Law, Material};
-use crate::plugin::{BodyKind, BodyPlan, Formulation, FormulationEntry, Registry};
+use crate::plugin::{BodyKind, BodyPlan, Distances, Formulation, FormulationEntry, Registry};
 use crate::rigid::Rigid;
 use crate::scene::{BodyDescription, Domain, Item, Problem, Scene, Source};
 use crate::shapes::{self, Aabb, Filling, Site};
@@ -72,6 +72,7 @@ pub(super) fn place_bodies<'r>(
             offers: formulation.0.offers,
             support: None,
             kernel: None,
+            distances: Distances::Reference,
             rows: 0..sites.len(),
             spacing: body.spacing,
             material_name: body.material.clone(),
@@ -108,6 +109,7 @@ impl<'r> Placed<'r> {
         lens[phase] = plan.rows.end;
         plan.support = (formulation.0.support)(&*formulation.1, &plan);
         plan.kernel = (formulation.0.kernel)(&*formulation.1);
+        plan.distances = (formulation.0.distances)(&*formulation.1, &plan);
         self.bodies.push(plan);
         self.formulations.push(formulation);
     }

@@ -2,6 +2,7 @@
 
 mod builder;
 mod contact_pairs;
+mod distances;
 mod error;
 mod facet_selection;
 mod handed;
@@ -17,6 +18,7 @@ mod traits;
 
 pub use builder::SimBuilder;
 pub(crate) use contact_pairs::contact_pairs;
+pub use distances::Distances;
 pub use error::SetupError;
 pub(crate) use facet_selection::selected_facets;
 pub use handed::ForBodies;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::distances::Distances;
 use super::error::SetupError;
 use super::offers::{BodyKind, Offer};
 use crate::kernels::KernelName;
@@ -59,6 +60,8 @@ pub struct BodyPlan {
     pub support: Option<f64>,
     /// Kernel by which its formulation fits deformation gradients; none if it does so by other means.
     pub kernel: Option<KernelName>,
+    /// Distances from which the weights of its formulation follow.
+    pub distances: Distances,
     /// Rows in the phase.
     pub rows: Range<usize>,
     /// Distance of neighbouring particles, m.

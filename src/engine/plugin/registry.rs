@@ -7,6 +7,7 @@ use std::sync::{Arc, LazyLock};
 use serde::de::DeserializeOwned;
 
 use super::builder::SimBuilder;
+use super::distances::Distances;
 use super::error::SetupError;
 use super::offers::{BodyKind, Offer};
 use super::plan::BodyPlan;
@@ -99,6 +100,7 @@ pub(crate) struct FormulationEntry {
     pub bytes_per_particle: usize,
     pub support: fn(&dyn Any, &BodyPlan) -> Option<f64>,
     pub kernel: fn(&dyn Any) -> Option<KernelName>,
+    pub distances: fn(&dyn Any, &BodyPlan) -> Distances,
     pub parse: fn(&Item) -> Result<Box<dyn Any>, Vec<Problem>>,
     pub columns: fn(&mut ColumnSet),
     pub assemble: fn(ParsedBodies, &mut SimBuilder<'_>) -> Result<(), SetupError>,
@@ -146,6 +148,9 @@ impl Registry {
             bytes_per_particle: F::BYTES_PER_PARTICLE,
             support: |any, body| any.downcast_ref::<F>()?.support(body),
             kernel: |any| any.downcast_ref::<F>()?.kernel(),
+            distances: |any, body| {
+                any.downcast_ref::<F>().map_or(Distances::Reference, |of| of.distances(body))
+            },
             parse: |item| Ok(Box::new(item.parse::<F>()?)),
             columns: F::columns,
             assemble: |bodies, sim| {

@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
 
 use super::builder::SimBuilder;
+use super::distances::Distances;
 use super::error::SetupError;
 use super::offers::{BodyKind, Offer};
 use super::plan::BodyPlan;
@@ -70,6 +71,11 @@ pub trait Formulation: DeserializeOwned + JsonSchema + 'static {
     /// Kernel of the weights by which it fits deformation gradients; none if it does so by other means.
     fn kernel(&self) -> Option<KernelName> {
         None
+    }
+
+    /// The distances from which the weights of a body follow.
+    fn distances(&self, _body: &BodyPlan) -> Distances {
+        Distances::Reference
     }
 
     /// Adds the columns that its particles have beside position, velocity, force, mass and mobility.

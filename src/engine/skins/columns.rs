@@ -7,6 +7,7 @@ use super::carriers::Carrier;
 use super::scale::Scale;
 use super::skin::Skin;
 use crate::parallel::{FourLanes, HotLoop, run_hot};
+use crate::plugin::Distances;
 use crate::world::{DeformationGradient, MissingColumn, Mobility, Position, Removed, Velocity, World};
 
 /// The columns of the particles of a body in this step.
@@ -77,10 +78,11 @@ impl SkinView<'_> {
         })
     }
 
-    /// Present distance of a vertex from the middle of the cell of a carrier, m.
+    /// Distance of a vertex from the middle of the cell of a carrier, as its kernel measures it, m.
     fn distance(&self, carrier: &Carrier) -> f64 {
-        let arm_from_middle = self.skin.arm_from_middle(carrier.particle, carrier.arm);
-        (self.gradient[self.first_row + carrier.particle as usize].0 * arm_from_middle).length()
+        let arm = self.skin.arm_from_middle(carrier.particle, carrier.arm);
+        let now = self.gradient[self.first_row + carrier.particle as usize].0 * arm;
+        self.skin.distances.between(arm.length(), now.length())
     }
 
     /// Scale of the shares of a vertex, if they follow the deformation.
@@ -97,6 +99,11 @@ impl SkinView<'_> {
         let middle = self.skin.arm_from_middle(particle, arm);
         let place = self.position[row].0 + gradient * arm;
         (self.skin.maps[map as usize].place(place), [middle, gradient * middle])
+    }
+
+    /// The distances from which shares follow.
+    pub(super) fn distances(&self) -> Distances {
+        self.skin.distances
     }
 
     /// A vector beside an image, as the particle sees it.

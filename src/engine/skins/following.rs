@@ -10,6 +10,9 @@
 //! x = sum_j s_j y_j ,   y_j = x_j + F_j (X - X_j) ,   s_j ~ (1 - d_j/R)^3 ,   d_j = |F_j (X - X_j)| ,   sum s_j = 1
 //! ```
 //!
+//! Where supports are ellipsoids that follow the deformation half way, so do these distances:
+//! `d_j = (|X - X_j| |F_j (X - X_j)|)^(1/2)`.
+//!
 //! The transpose has the change of the shares with F: a force f on a vertex is s_j f on the particles, and
 //! the couples `[s_j f + (f . u_j) g_j] (x) (X - X_j)` with `u_j = y_j - x` and g_j the slope of the share
 //! along `F_j (X - X_j)`. In the undeformed state the shares are those of Lagrangian bodies. For particles
@@ -35,15 +38,17 @@ pub(super) struct FollowingShare {
 
 /// Finds the shares at the ends of a patch.
 pub(super) fn follow(view: &SkinView<'_>, ends: &[End], now: &[Vertex], out: &mut [FollowingShare]) {
+    let distances = view.distances();
     for_each_block((out, ends), &mut Vec::new(), &|_, (out, ends): (&mut [FollowingShare], &[End])| {
         for (out, end) in out.iter_mut().zip(ends) {
             let vertex = &now[end.vertex as usize];
             let (place, [middle, now]) = view.carried_by(end.particle, end.map, end.arm);
-            let distance = now.length();
+            let (reference, present) = (middle.length(), now.length());
+            let distance = distances.between(reference, present);
             *out = FollowingShare {
                 share: vertex.scale.share(distance),
                 away: view.back(end.map, place - vertex.place),
-                slope: now * vertex.scale.slope(distance),
+                slope: now * (vertex.scale.slope(distance) * distances.slope(reference, present)),
                 middle,
             };
         }

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::carriers::{Carrier, CarrierCells, REACH, carriers};
 use super::scale::CANDIDATES;
-use crate::plugin::{BodyPlan, Offer};
+use crate::plugin::{BodyPlan, Distances};
 use crate::scene::Dimension;
 use crate::shapes::{Facets, Shape};
 use crate::symmetry::{Map, Repeat, maps_of};
@@ -51,6 +51,8 @@ pub(crate) struct Skin {
     /// Reach of a vertex, m, if the shares of its carriers follow the deformation; none if they are those of
     /// the start.
     pub(super) reach: Option<f64>,
+    /// The distances from which these shares follow.
+    pub(super) distances: Distances,
 }
 
 impl Skin {
@@ -77,7 +79,8 @@ impl Skin {
         });
         let cells = CarrierCells { places: &places, middles: &middles };
         // Kernels of the present configuration.
-        let reach = body.offers(Offer::PairControl).then_some(REACH * body.spacing);
+        let follows = body.distances != Distances::Reference;
+        let reach = follows.then_some(REACH * body.spacing);
         let farther = if reach.is_some() { CANDIDATES } else { 1.0 };
         let is_moved = reach.is_some() && !body.sides.is_empty();
         let moved = places.iter().zip(&middles).filter(|_| is_moved).map(|(now, middle)| now - middle);
@@ -106,6 +109,7 @@ impl Skin {
             layer,
             moved,
             reach,
+            distances: body.distances,
         };
         skin.corner = skin.corners(&normals);
         Some(skin)

@@ -6,7 +6,7 @@ use glam::{DMat3, DVec3};
 
 use super::{Patch, QuadratureRule, Skin, SkinColumns, Wanted};
 use crate::assembly::build;
-use crate::plugin::{Offer, Registry};
+use crate::plugin::{Distances, Registry};
 use crate::scene::{Source, parse};
 use crate::simulation::Simulation;
 use crate::world::{BodyId, DeformationGradient, Force, Position};
@@ -26,10 +26,10 @@ pub(crate) fn simulation(dimension: &str, shape: &str) -> Simulation {
 /// The skin of a body of a simulation, with a spacing of 0.01 m, whose particles stand where those of the
 /// scene do.
 pub(crate) fn skin(sim: &Simulation, id: BodyId, dimension: &str, shape: &str) -> Skin {
-    skin_of(sim, id, (dimension, shape), &[])
+    skin_of(sim, id, (dimension, shape), Distances::Reference)
 }
 
-fn skin_of(sim: &Simulation, id: BodyId, (dimension, shape): (&str, &str), offers: &'static [Offer]) -> Skin {
+fn skin_of(sim: &Simulation, id: BodyId, (dimension, shape): (&str, &str), distances: Distances) -> Skin {
     use crate::plugin::BodyPlan;
     use crate::scene::Dimension;
     use crate::shapes::{Filling, Lattice, Shape, fill};
@@ -65,9 +65,10 @@ fn skin_of(sim: &Simulation, id: BodyId, (dimension, shape): (&str, &str), offer
         bounds: shape.region(axes, folder, "shape").unwrap().bounds(),
         velocity: None,
         kind: crate::plugin::BodyKind::Solid,
-        offers,
+        offers: &[],
         support: None,
         kernel: None,
+        distances,
     };
     Skin::of(&plan, &shape, &[], axes, folder).unwrap_or_else(|| panic!("no skin"))
 }
@@ -160,9 +161,10 @@ fn press(sim: &Simulation) {
 
 #[test]
 fn forces_return_by_the_transpose_where_shares_follow_the_deformation() {
-    for (dimension, shape) in SHAPES {
+    let kinds = [Distances::Present, Distances::HalfWay];
+    for ((dimension, shape), distances) in kinds.iter().flat_map(|kind| SHAPES.map(|shape| (shape, *kind))) {
         let sim = simulation(dimension, shape);
-        let skin = Arc::new(skin_of(&sim, BodyId(0), (dimension, shape), &[Offer::PairControl]));
+        let skin = Arc::new(skin_of(&sim, BodyId(0), (dimension, shape), distances));
         press(&sim);
         let load = |vertex: usize| DVec3::new((7 * vertex % 11) as f64 - 5.0, (3 * vertex % 5) as f64, 1.0);
         let vertices: Vec<u32> = (0..skin.vertices() as u32).collect();

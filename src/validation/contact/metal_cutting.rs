@@ -95,7 +95,7 @@ fn metal_cutting(registry: &Registry, across: usize) -> Result<Vec<Check>> {
             source,
         ),
         Check::below("failed particles from the cut, in depths", off, 0.4, "the chip parts along the cut"),
-        balance.check(Kind::Abrupt),
+        balance.check(Kind::Smooth),
     ])
 }
 

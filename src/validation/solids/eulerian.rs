@@ -44,7 +44,6 @@ pub(crate) const PLATE: Case = Case {
 pub(crate) const ALUMINIUM: Case = Case {
     id: "S15E",
     title: "Taylor bar of aluminium 6061-T6, Eulerian",
-    ci_resolution: 12,
     run: |registry, n| (taylor_bars::ALUMINIUM.run)(&eulerian(registry), n),
     ..taylor_bars::ALUMINIUM
 };

@@ -13,7 +13,7 @@ use crate::contact::response::Interaction;
 use crate::contact::skins::{SkinContact, SkinOnTool};
 use crate::contact::system::{ContactActivity, FailingSkins, Touching};
 use crate::contact::tools::SurfaceContact;
-use crate::plugin::{BodyPlan, Offer, SimBuilder};
+use crate::plugin::{BodyPlan, Distances, SimBuilder};
 use crate::rigid::sphere_of;
 use crate::scene::{ContactSurface, Item, Problem};
 use crate::skins::Skin;
@@ -91,7 +91,7 @@ impl Planner<'_> {
         if mirrors(self.planes, body.id, body.id).len() > 1 {
             return Some("it may touch its image behind a symmetry plane");
         }
-        let joins = body.offers(Offer::PairControl);
+        let joins = body.distances != Distances::Reference;
         joins.then_some("its kernels join what is near and does not touch")
     }
 

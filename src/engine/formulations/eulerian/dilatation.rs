@@ -5,13 +5,12 @@
 //! the name of the plugin.
 
 use glam::DMat3;
-use serde::{Deserialize, Serialize};
 
 use super::rows::EulerianRows;
 use crate::column;
 use crate::parallel::sum_over_blocks;
 use crate::schedule::{AccountKind, Step, StepError};
-use crate::world::{BodyId, PhaseId};
+use crate::world::PhaseId;
 
 column! {
     /// Rate of the logarithm of the volume that plugins add to the trace of the velocity gradient of the next
@@ -25,7 +24,7 @@ const ACCOUNT: &str = "density_diffusion";
 
 /// What each particle gains by a change of the logarithm of its volume: tr(tau) V_0 over the axes of the
 /// body, J, at the end of the last step. A checkpoint holds it: the next step books the mean with its own.
-#[derive(Default, Serialize, Deserialize)]
+#[derive(Default)]
 pub(super) struct Dilatation {
     before: Vec<f64>,
 }
@@ -37,7 +36,6 @@ impl Dilatation {
         &mut self,
         phase: PhaseId,
         packed: &EulerianRows,
-        bodies: impl Iterator<Item = BodyId>,
         step: &mut Step<'_>,
     ) -> Result<(), StepError> {
         let view = step.world.phase(phase);
@@ -47,8 +45,8 @@ impl Dilatation {
         let rate = view.read::<DilatationRate>()?;
         self.before.resize(rate.len(), 0.0);
         let account = step.ledger.account(ACCOUNT, AccountKind::Dissipated);
-        for (body, listed) in bodies.zip(&packed.lists.bodies) {
-            let rows = listed.rows.clone();
+        for body in &packed.lists.bodies {
+            let rows = body.rows.clone();
             let own = (&mut self.before[rows.clone()], &rate[rows.clone()]);
             let energy = sum_over_blocks(own, &|first, (before, rate): (&mut [f64], &[DilatationRate])| {
                 let mut energy = 0.0;
@@ -60,10 +58,20 @@ impl Dilatation {
                 energy
             });
             if step.clock.dt > 0.0 {
-                step.ledger.add(account, body, -energy * step.clock.dt);
+                step.ledger.add(account, body.id, -energy * step.clock.dt);
             }
         }
         Ok(())
+    }
+
+    /// What a checkpoint holds.
+    pub fn save(&self) -> Vec<u8> {
+        postcard::to_stdvec(&self.before).unwrap_or_default()
+    }
+
+    /// Takes over what a checkpoint holds; `false` if it is something else.
+    pub fn restore(&mut self, state: &[u8]) -> bool {
+        postcard::from_bytes(state).map(|before| self.before = before).is_ok()
     }
 }
 

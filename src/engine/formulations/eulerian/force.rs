@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::dilatation::Dilatation;
 use super::rows::EulerianRows;
 use crate::parallel::{FourLanes, Lanes4, PlaneOrSpace, for_each_own_block, run_hot_in, share_rows_of};
 use crate::schedule::{Run, Step, StepError};
@@ -12,6 +13,9 @@ pub(super) struct EulerianForce {
     pub phase: PhaseId,
     /// Acceleration of gravity, m/s2.
     pub gravity: DVec3,
+    /// What changes of volume do without a motion: the stresses are complete here, with those of loads on the
+    /// surface.
+    pub dilatation: Dilatation,
 }
 
 impl Run for EulerianForce {
@@ -21,7 +25,15 @@ impl Run for EulerianForce {
         let mass = view.read::<Mass>()?;
         let mut force = view.write_own::<Force>()?;
         write_own(&packed, &mass, self.gravity, &mut force);
-        Ok(())
+        self.dilatation.book(self.phase, &packed, step)
+    }
+
+    fn save(&self) -> Vec<u8> {
+        self.dilatation.save()
+    }
+
+    fn restore(&mut self, state: &[u8]) -> bool {
+        self.dilatation.restore(state)
     }
 }
 

@@ -46,4 +46,5 @@ pub use control::HourglassEnergy;
 pub use dilatation::DilatationRate;
 pub use divergence::Divergence;
 pub use parameters::Eulerian;
+pub(crate) use supports::SUPPORT_CHANGE;
 pub use supports::SupportMetric;

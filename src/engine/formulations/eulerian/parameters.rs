@@ -7,7 +7,7 @@ use serde::Deserialize;
 use super::artificial_stress::{ArtificialStress, TensileStress};
 use super::control::HourglassEnergy;
 use super::control_rows::{BodyControl, EulerianControlRows};
-use super::dilatation::DilatationRate;
+use super::dilatation::{Dilatation, DilatationRate};
 use super::divergence::Divergence;
 use super::force::EulerianForce;
 use super::lists::{EulerianBody, EulerianLists};
@@ -22,7 +22,7 @@ use crate::formulations::bonded::{HeldBody, all_shares, balanced_shares};
 use crate::kernels::{Kernel, KernelName};
 use crate::linalg::Sym3;
 use crate::pair::add_pair_systems;
-use crate::plugin::{BodyKind, BodyPlan, Formulation, Offer, Setup, SetupError, SimBuilder};
+use crate::plugin::{BodyKind, BodyPlan, Distances, Formulation, Offer, Setup, SetupError, SimBuilder};
 use crate::removal::LeavingParticles;
 use crate::scene::Dimension;
 use crate::schedule::{Mode, Stage, System};
@@ -42,8 +42,9 @@ pub struct Eulerian {
     pub kernel: KernelName,
     /// Support radius over spacing.
     pub support: f64,
-    /// Whether supports become ellipsoids that follow large deformations, for metal that is upset strongly.
-    pub support_follows: bool,
+    /// Whether supports become ellipsoids that follow large deformations. Default: true where the material
+    /// flows plastically, but for `divergence: Shepard`.
+    pub support_follows: Option<bool>,
     /// Divergence operator: force from stress.
     pub divergence: Divergence,
     /// Artificial stress against the tensile instability, for comparison; hourglass control does better.
@@ -59,7 +60,7 @@ impl Default for Eulerian {
         Self {
             kernel: KernelName::CubicSpline,
             support: USUAL_SUPPORT,
-            support_follows: false,
+            support_follows: None,
             divergence: Divergence::Adjoint,
             artificial_stress: None,
         }
@@ -96,6 +97,10 @@ impl Formulation for Eulerian {
         Some(self.kernel)
     }
 
+    fn distances(&self, body: &BodyPlan) -> Distances {
+        if self.follows(body) { Distances::HalfWay } else { Distances::Present }
+    }
+
     fn columns(columns: &mut ColumnSet) {
         columns
             .add::<SupportRadius>()
@@ -125,7 +130,7 @@ impl Formulation for Eulerian {
             let name = &sim.body(*id).name;
             let touches_itself = touching.has(name, name);
             let rows = sim.body(*id).rows.clone();
-            let follows = parameters.support_follows;
+            let follows = parameters.follows(sim.body(*id));
             listed.push(EulerianBody {
                 id: *id,
                 rows,
@@ -208,20 +213,27 @@ fn add_systems(phase: PhaseId, stress: Stress, sim: &mut SimBuilder<'_>) {
         .touches_all(state);
     let has_control = sim.columns(phase).get(HourglassEnergy::NAME).is_some();
     let stress = if has_control { stress.writes::<HourglassEnergy>() } else { stress };
-    let stress = if is_dilated { stress.reads::<DilatationRate>() } else { stress };
     let has_tensile_stress = sim.columns(phase).get(TensileStress::NAME).is_some();
     sim.add_system(if has_tensile_stress { stress.writes::<TensileStress>() } else { stress });
-    let force = EulerianForce { phase, gravity: sim.gravity() };
+    let force = EulerianForce { phase, gravity: sim.gravity(), dilatation: Dilatation::default() };
     let force = System::new(Stage::Rates, FORCE, force).on_phases([phase]).reads::<Mass>();
+    let force = if is_dilated { force.reads::<DilatationRate>() } else { force };
     sim.add_system(
         force.reads_near::<Position>().touches(CORRECTED_STRESS, Mode::ReadsNear).writes::<Force>(),
     );
 }
 
 impl Eulerian {
+    /// Whether the supports of a body follow the deformation. Where it swings elastically, each change of the
+    /// supports would cost energy.
+    fn follows(&self, body: &BodyPlan) -> bool {
+        let flows = || body.solid_law().is_ok_and(|law| law.initial_yield_stress().is_some());
+        self.support_follows.unwrap_or_else(|| self.divergence == Divergence::Adjoint && flows())
+    }
+
     fn check(&self, spacing: f64) -> Result<(), SetupError> {
         require_support(self.support, USUAL_SUPPORT, spacing)?;
-        if self.support_follows && self.divergence == Divergence::Shepard {
+        if self.support_follows == Some(true) && self.divergence == Divergence::Shepard {
             return Err(SetupError::parameter(
                 "support_follows",
                 "`support_follows: true` needs the corrected gradient of `divergence: Adjoint`, found `Shepard`",

@@ -16,6 +16,7 @@ use super::supports::{self, SupportMetric};
 use super::within::Center;
 use crate::formulations::bonded::SeenEllipsoid;
 use crate::kernels::{Kernel, KernelProfile, KernelVisitor, ProfiledKernel, ScaledKernel};
+use crate::linalg::Sym3;
 use crate::parallel::{
     FourLanes, HotLoop, Lanes4, for_each_own_block, run_hot_on, share_rows, split_by_rows,
 };
@@ -67,10 +68,11 @@ impl Run for VelocityGradients {
             packed.lists.leave_out_elsewhere(place, start, &deformation);
             let dilatation =
                 if view.has::<DilatationRate>() { Some(view.read::<DilatationRate>()?) } else { None };
-            advance(&mut packed, &mut deformation, dilatation.as_deref(), step.clock.dt);
+            let mut metric = view.write::<SupportMetric>()?;
+            advance(&mut packed, (&mut deformation, &mut metric), dilatation.as_deref(), step.clock.dt);
+            packed.load_supports(&metric);
             if step.clock.step.is_multiple_of(supports::EVERY) {
                 let damage = if view.has::<Damage>() { Some(view.read_near::<Damage>()?) } else { None };
-                let mut metric = view.write::<SupportMetric>()?;
                 if packed.renew_supports(&mut metric, &deformation, damage.as_deref()) {
                     update_lists(&mut packed, place, start, motion, step.world)?;
                 }
@@ -95,10 +97,10 @@ fn update_lists(
     })
 }
 
-/// Advances F of all bodies by a step of `dt`, s.
+/// Advances F and the supports of all bodies by a step of `dt`, s.
 fn advance(
     packed: &mut EulerianRows,
-    deformation: &mut [DeformationGradient],
+    (deformation, metric): (&mut [DeformationGradient], &mut [SupportMetric]),
     dilatation: Option<&[DilatationRate]>,
     dt: f64,
 ) {
@@ -106,8 +108,9 @@ fn advance(
     for (body, of) in lists.bodies.iter().zip(kernels) {
         let rows = body.rows.clone();
         let own: &mut [DMat3] = bytemuck::cast_slice_mut(&mut deformation[rows.clone()]);
-        let advanced =
-            AdvancedRows { deformation: &mut *own, near: near.of_rows(&lists.pairs, rows.clone()) };
+        let metric = &mut metric[rows.clone()];
+        let near = near.of_rows(&lists.pairs, rows.clone());
+        let advanced = AdvancedRows { deformation: &mut *own, metric: &mut *metric, near };
         for_each_own_block(advanced, &mut Vec::new(), &|first, block: AdvancedRows<'_>| {
             let first = rows.start + first;
             let (kernel, support, ellipsoids) = (of.kernel, body.support, supports.of(body));
@@ -126,17 +129,21 @@ fn advance(
             });
         });
         share_rows(own);
+        if body.is_stretched {
+            share_rows(metric);
+        }
     }
 }
 
 /// Packed rows that the pass writes, split by rows of one body.
 struct AdvancedRows<'a> {
     deformation: &'a mut [DMat3],
+    metric: &'a mut [SupportMetric],
     /// Scratch memory for the neighbours at mid-step.
     near: NeighborRows<'a>,
 }
 
-split_by_rows!(AdvancedRows { deformation, near });
+split_by_rows!(AdvancedRows { deformation, metric, near });
 
 /// Advances F of a block.
 struct Advance<'a> {
@@ -183,7 +190,7 @@ impl<K: KernelProfile> AdvanceLoop<'_, K> {
     fn over<A: FourLanes, const STRETCHED: bool>(self, a: A) {
         let Self { kernel, of } = self;
         let Advance { support, lists, points, ellipsoids, first, dilatation, dt, rows, .. } = of;
-        let AdvancedRows { deformation, near: NeighborRows { offsets, neighbors, .. } } = rows;
+        let AdvancedRows { deformation, metric, near: NeighborRows { offsets, neighbors, .. } } = rows;
         let begin = offsets[0];
         let mut batch = RateBatch::NONE;
         for (k, f) in deformation.iter_mut().enumerate() {
@@ -211,6 +218,9 @@ impl<K: KernelProfile> AdvanceLoop<'_, K> {
                 rate += gradient(dilatation[first + k].0, A::AXES == 2);
             }
             let half = rate * (0.5 * dt);
+            if STRETCHED {
+                metric[k].0 = turned(&metric[k].0, &cayley(&spin(&half)));
+            }
             *f = cayley(&half) * *f;
         }
     }
@@ -310,6 +320,18 @@ impl GradientSums {
 #[inline(always)]
 fn cayley(a: &DMat3) -> DMat3 {
     (DMat3::IDENTITY - *a).inverse() * (DMat3::IDENTITY + *a)
+}
+
+/// Skew part of a tensor.
+#[inline(always)]
+fn spin(a: &DMat3) -> DMat3 {
+    (*a - a.transpose()) * 0.5
+}
+
+/// A tensor after a turn.
+#[inline(always)]
+fn turned(g: &Sym3, turn: &DMat3) -> Sym3 {
+    Sym3::symmetric_part(*turn * g.to_matrix() * turn.transpose())
 }
 
 #[cfg(test)]

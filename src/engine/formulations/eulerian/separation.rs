@@ -18,7 +18,11 @@ const INSIDE: f64 = 0.1;
 /// The same, at least, of a particle at an open side.
 const OPEN: f64 = 0.15;
 /// Least number of particles laid open that is worth a warning: a single one may stray.
-const FEW: usize = 3;
+const FEW: f64 = 3.0;
+/// The same over the particles in a section of the body: where a curved side of steps of the lattice is
+/// upset, a ring of particles below the steps comes to lie in the side. A body that comes apart opens two
+/// sections.
+const OF_SECTION: f64 = 0.05;
 /// Cosine of the angle about the direction away from the neighbours within which an open side has none.
 const CONE: f64 = 0.766;
 /// Steps between two looks.
@@ -70,10 +74,7 @@ pub(super) fn warn(phase: PhaseId, packed: &EulerianRows, step: &mut Step<'_>) {
         return;
     }
     for body in &packed.lists.bodies {
-        let open = laid_open(packed, body);
-        if open < FEW {
-            continue;
-        }
+        let Some(open) = laid_open(packed, body) else { continue };
         let begin = format!("Eulerian body `{}` has come apart:", step.world.body(body.id).name);
         let time = step.clock.time;
         raise_warning(step.warnings, &begin, open, || {
@@ -87,8 +88,8 @@ pub(super) fn warn(phase: PhaseId, packed: &EulerianRows, step: &mut Step<'_>) {
     }
 }
 
-/// Number of inner particles of a body that have an open side, over all ranks.
-fn laid_open(packed: &EulerianRows, body: &EulerianBody) -> usize {
+/// Number of inner particles of a body that have an open side, over all ranks, if it is worth a warning.
+fn laid_open(packed: &EulerianRows, body: &EulerianBody) -> Option<usize> {
     // What has been removed has no neighbours.
     let is_there = |row: usize| packed.points[row].place.0[3] > 0.0;
     let is_open = |row: usize| offset(packed, body, row) > OPEN && is_one_sided(packed, row);
@@ -97,5 +98,8 @@ fn laid_open(packed: &EulerianRows, body: &EulerianBody) -> usize {
         let rows = body.rows.start + first..;
         rows.zip(inside).filter(|&(row, inside)| *inside && is_there(row) && is_open(row)).count() as f64
     });
-    count as usize
+    let inner: f64 =
+        sum_over_own_blocks(inside, &|_, inside: &[bool]| inside.iter().filter(|is| **is).count() as f64);
+    let section = if packed.plane { inner.sqrt() } else { inner.cbrt().powi(2) };
+    (count >= FEW.max(OF_SECTION * section)).then_some(count as usize)
 }

@@ -6,14 +6,13 @@ use glam::{DMat3, DVec3};
 use super::artificial_stress;
 use super::control::{self, HourglassEnergy};
 use super::control_rows::Carried;
-use super::dilatation::Dilatation;
 use super::divergence::{Divergence, corrected};
 use super::force;
 use super::near::{ComputePairs, NearbyMotion, NeighborRows};
 use super::particle::EulerianParticle;
 use super::rows::{EulerianKernel, EulerianRows, PointColumns};
 use super::separation;
-use super::supports::SupportMetric;
+use super::supports::{SUPPORT_CHANGE, SupportMetric};
 use crate::formulations::bonded::SeenEllipsoid;
 use crate::linalg::Sym3;
 use crate::parallel::{Lanes4, Maximum, split_by_rows, sum_over_blocks};
@@ -27,14 +26,10 @@ use crate::world::{
     Force, Mass, MissingColumn, PhaseId, PhaseView, Position, ReferenceVolume, Removed, Velocity, World,
 };
 
-/// Account of what changes as supports do.
-const SUPPORT_CHANGE: &str = "support_change";
-
 /// The system.
 pub(super) struct Stress {
     phase: PhaseId,
     solids: SolidBodies,
-    dilatation: Dilatation,
     /// Share of its stress that every row carries; empty where all carry all of it.
     shares: Vec<f64>,
     /// Removed rows that the sums know of, ascending.
@@ -57,8 +52,6 @@ impl Run for Stress {
             // From the first step on, so that it has its place among the energies.
             step.ledger.account(SUPPORT_CHANGE, AccountKind::Dissipated);
         }
-        let bodies = self.solids.iter().map(|own| own.id);
-        self.dilatation.book(self.phase, &packed, bodies, step)?;
         self.follow(step, &mut packed)?;
         self.update_removed(step, &mut packed)?;
         artificial_stress::write(step.world, self.phase, &packed)?;
@@ -73,14 +66,11 @@ impl Run for Stress {
     }
 
     fn save(&self) -> Vec<u8> {
-        postcard::to_stdvec(&(self.solids.steps(), &self.dilatation)).unwrap_or_default()
+        postcard::to_stdvec(&self.solids.steps()).unwrap_or_default()
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        let Ok((steps, dilatation)) = postcard::from_bytes::<(Vec<BodyStep>, Dilatation)>(state) else {
-            return false;
-        };
-        self.dilatation = dilatation;
+        let Ok(steps) = postcard::from_bytes::<Vec<BodyStep>>(state) else { return false };
         self.is_restored = true;
         self.solids.restore_steps(&steps)
     }
@@ -88,8 +78,7 @@ impl Run for Stress {
 
 impl Stress {
     pub fn new(phase: PhaseId, solids: SolidBodies, shares: Vec<f64>) -> Self {
-        let dilatation = Dilatation::default();
-        Self { phase, solids, dilatation, shares, removed: Vec::new(), is_restored: false }
+        Self { phase, solids, shares, removed: Vec::new(), is_restored: false }
     }
 
     /// The columns that it touches for its bodies.

@@ -13,6 +13,7 @@ use crate::column;
 use crate::formulations::bonded::{Ellipsoid, SeenEllipsoid};
 use crate::linalg::{Eigen, Sym3};
 use crate::parallel::{for_each_own_block, share_rows, sum_over_own_blocks};
+use crate::solids::fill_rows;
 use crate::symmetry::Ghosts;
 use crate::world::{Damage, DeformationGradient};
 
@@ -20,6 +21,9 @@ column! {
     /// Metric of distances in the kernel.
     pub struct SupportMetric(Sym3) = "support_metric", "G", "1";
 }
+
+/// Account of what changes as supports do.
+pub(crate) const SUPPORT_CHANGE: &str = "support_change";
 
 /// Steps between two looks at the deformation.
 pub(super) const EVERY: u64 = 16;
@@ -57,11 +61,13 @@ impl Supports {
     /// Takes over what the column holds.
     pub fn load(&mut self, metric: &[SupportMetric], bodies: &mut [EulerianBody], ghosts: &Ghosts) {
         (self.is_loaded, self.is_renewed) = (true, false);
-        self.own.clear();
-        self.seen.clear();
         if metric.iter().any(|own| own.0 != Sym3::IDENTITY) {
-            self.own.extend(metric.iter().map(|own| Ellipsoid::new(own.0)));
+            self.own.resize(metric.len(), Ellipsoid::SPHERE);
+            fill_rows(&mut self.own, 0, |row| Ellipsoid::new(metric[row].0));
             self.fill(ghosts);
+        } else {
+            self.own.clear();
+            self.seen.clear();
         }
         for body in bodies {
             let rows = body.rows.clone();

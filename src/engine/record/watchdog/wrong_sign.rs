@@ -4,6 +4,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::remedies::Remedies;
+use crate::formulations::eulerian::SUPPORT_CHANGE;
 use crate::formulations::fluid::{FlowCloud, FlowParticle, Group};
 use crate::notation::quantity;
 use crate::parallel::{BlockSum, sum_over_blocks};
@@ -16,6 +17,9 @@ const SHARE: f64 = 0.01;
 /// The same where walls give it: their pressure is extrapolated, and they push fluid on that starts or
 /// arrives, to take as much a little later.
 const SHARE_OF_WALLS: f64 = 0.05;
+/// The same where supports of Eulerian bodies change: the energy of the control has other weights then, most
+/// of them larger ones.
+const SHARE_OF_SUPPORTS: f64 = 0.05;
 /// The same over the work that gravity and loads on fluids could do on all bodies along their own heights:
 /// bodies at rest have hardly any other energy.
 const SHARE_OF_WEIGHT: f64 = 0.005;
@@ -67,7 +71,11 @@ impl WrongSign {
             account.kind == AccountKind::Dissipated && !may_give
         };
         for account in step.ledger.accounts().iter().filter(can_only_take) {
-            let worth = if account.name == WALLS { SHARE_OF_WALLS } else { SHARE };
+            let worth = match account.name.as_str() {
+                WALLS => SHARE_OF_WALLS,
+                SUPPORT_CHANGE => SHARE_OF_SUPPORTS,
+                _ => SHARE,
+            };
             let scale = largest.max(SHARE_OF_WEIGHT / worth * self.weight);
             let share = if scale > 0.0 { -account.total() / scale } else { 0.0 };
             let k = self.accounts.iter().position(|given| given.name == account.name).unwrap_or_else(|| {
@@ -144,6 +152,10 @@ fn advice(account: &Account, remedies: &Remedies, step: &Step<'_>) -> String {
     }
     if account.name == CONTACT_DAMPING {
         return "the motion that it drives is not real: elastic bodies that slide chatter, which `artificial_viscosity()` in their plugins or a larger `restitution` takes"
+            .to_owned();
+    }
+    if account.name == SUPPORT_CHANGE {
+        return "the motion that it drives is not real: more particles across the body need less hourglass control, or `support_follows: false` keeps spheres"
             .to_owned();
     }
     "the motion that it drives is not real: leave the plugin out, or take a smaller step or more particles"

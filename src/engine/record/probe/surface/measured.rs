@@ -6,7 +6,7 @@ use super::points::{PointBelow, SurfacePoints};
 use super::shifts::shifts;
 use crate::fields::ChosenField;
 use crate::kernels::Kernel;
-use crate::plugin::{BodyPlan, Offer, SelectedFacet, SimBuilder};
+use crate::plugin::{BodyPlan, Distances, Offer, SelectedFacet, SimBuilder};
 use crate::record::probe::stencil::Stencil;
 use crate::shapes::Facets;
 use crate::skins::Skin;
@@ -124,8 +124,9 @@ impl MeasuredPoints<'_> {
         let elastic = law.elastic();
         let coupling = elastic.lambda / (elastic.lambda + 2.0 * elastic.shear);
         let flows = law.initial_yield_stress().is_some();
+        let keeps_layers = body.distances == Distances::Reference;
         let gravity = sim.gravity();
-        Some(SurfacePoints { body: body.id, coupling, flows, gravity, maps, points })
+        Some(SurfacePoints { body: body.id, coupling, flows, keeps_layers, gravity, maps, points })
     }
 
     /// The parts that each particle carries of the surface of the body, m2 (m); none where loads act on

@@ -19,6 +19,9 @@ use crate::world::{
 /// Force from outside on the particles near a point that no traction explains, over their stress times their
 /// area: up to the first the traction is known, from the second on it is not.
 const UNEXPLAINED: [f64; 2] = [0.05, 0.2];
+/// Logarithmic stretch along the normal from which on nothing is known of the traction on a body whose
+/// kernels have present distances: loads are then shared by more or fewer layers than at the start.
+const OTHER_LAYERS: f64 = 0.2;
 
 /// A point at or below a surface.
 pub(super) struct PointBelow {
@@ -44,6 +47,8 @@ pub(in crate::record::probe) struct SurfacePoints {
     pub(super) coupling: f64,
     /// Whether the material may flow.
     pub(super) flows: bool,
+    /// Whether as many layers as at the start share a load, however deformed they are.
+    pub(super) keeps_layers: bool,
     /// Acceleration of gravity, m/s2.
     pub(super) gravity: DVec3,
     /// By which the body goes on beyond symmetry planes and periods.
@@ -78,11 +83,13 @@ impl SurfacePoints {
         let foot = StressesNearby::read(self, world, point.foot.shares_of_images(axes, there))?;
         let loaded = self.loaded(&point.surfaces, world, there)?;
         let traction = SurfaceTraction::of(&loaded);
-        let share = foot.explained(loaded.iter().map(|of| traction.left(of).length()).sum(), axes);
+        let normal = foot.deformation().inverse().transpose() * point.normal;
+        let left = loaded.iter().map(|of| traction.left(of).length()).sum();
+        let share = foot.explained(left, axes) * self.known_layers(normal.length());
         if share == 0.0 {
             return Ok(None);
         }
-        let normal = (foot.deformation().inverse().transpose() * point.normal).normalize_or_zero();
+        let normal = normal.normalize_or_zero();
         let mut excess = foot.stress() * normal - traction.on(normal);
         if let Some(pressure) = self.pressure_of_fluids(point, normal, (world, resources), there)? {
             // Their friction is not known at the surface: along it the stress is extrapolated.
@@ -91,6 +98,12 @@ impl SurfacePoints {
         let of_traction = self.of_traction(excess, normal) * point.fade;
         let near = StressesNearby::read(self, world, point.stencil.shares_of_images(axes, there))?;
         Ok(Some(SurfaceStress { stress: Sym3::symmetric_part(near.stress() - of_traction), share }))
+    }
+
+    /// 1 if a load is shared by the layers of the start, 0 if it is not, by one over the stretch along the
+    /// normal.
+    fn known_layers(&self, compression: f64) -> f64 {
+        if self.keeps_layers { 1.0 } else { (1.0 - compression.ln().abs() / OTHER_LAYERS).max(0.0) }
     }
 
     /// Pressure of the fluids on the surface at a point, Pa, as a sensor shows it there; none where there is
