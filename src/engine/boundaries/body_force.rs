@@ -35,6 +35,7 @@ impl Plugin for BodyForce {
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         let selection = sim.select_at_start(&self.on, "on")?;
         load::require_movable(&selection, sim)?;
+        load::warn_of_parts(Self::NAME, &self.on, &selection, sim);
         let field = VectorField::new(self.value, sim)?;
         let law = ForcePerMass { field };
         load::apply("body_force", law, &selection, sim, |system| system.reads::<Mass>());

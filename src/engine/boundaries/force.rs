@@ -34,6 +34,7 @@ impl Plugin for TotalForce {
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         let selection = sim.select_at_start(&self.on, "on")?;
         load::require_movable(&selection, sim)?;
+        load::warn_of_parts(Self::NAME, &self.on, &selection, sim);
         let field = VectorField::new(self.value, sim)?;
         let share = 1.0 / selection.len() as f64;
         let shares = selection.parts.iter().map(|(_, rows)| vec![share; rows.len()]).collect();

@@ -14,9 +14,9 @@ use super::on_rigid::push_beside;
 use super::part::{Part, parts_of, phases_of};
 use super::pulses;
 use crate::parallel::{Picked, sum_over_blocks};
-use crate::plugin::{BodyKind, Selection, SetupError, SimBuilder};
+use crate::plugin::{BodyKind, BodyPlan, Selection, SetupError, SimBuilder};
 use crate::rigid::{MovingFunction, RIGID_BODIES};
-use crate::scene::Expression;
+use crate::scene::{Expression, Select};
 use crate::schedule::{AccountKind, Mode, Run, Stage, Step, StepError, System};
 use crate::world::{BodyId, Force, ParticleId, Position, Removed, Velocity};
 
@@ -103,6 +103,26 @@ pub(super) fn require_movable(selection: &Selection, sim: &SimBuilder<'_>) -> Re
         }
         _ => Ok(()),
     }
+}
+
+/// How a free surface is loaded.
+pub(super) const PRESSED_SURFACE: &str = "pressures of a flow count from that of its free surface: leave a constant one out, and let a `Wall` or a `Rigid` body press where another one acts";
+
+/// Warns of a load on a part of a fluid, which flows away from where it was selected.
+pub(super) fn warn_of_parts(name: &str, on: &Select, selection: &Selection, sim: &mut SimBuilder<'_>) {
+    let is_part = |body: &BodyPlan, rows: &[u32]| {
+        body.kind == BodyKind::Fluid && on.nearest.is_none() && rows.len() < body.sites.len()
+    };
+    let bodies = selection.parts.iter().map(|(id, rows)| (sim.body(*id), rows));
+    let warning = |body: &BodyPlan| {
+        format!(
+            "`{name}` loads those particles of the fluid `{}` that it selects at the start, wherever they flow: a force in a region is a function of place, `\"5*step(x)\"`,              on all of the fluid, and particles of a surface that are pressed sink into it; {PRESSED_SURFACE}",
+            body.name
+        )
+    };
+    let warnings: Vec<String> =
+        bodies.filter(|(body, rows)| is_part(body, rows)).map(|(body, _)| warning(body)).collect();
+    warnings.into_iter().for_each(|warning| sim.warn(warning));
 }
 
 struct Load {

@@ -4,6 +4,7 @@ mod beside_held;
 mod body_force;
 mod broken_skin;
 mod displacement;
+mod driven_fluids;
 mod face_area;
 mod field;
 mod fix;

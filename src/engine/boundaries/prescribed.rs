@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::driven_fluids;
 use super::field::VectorField;
 use super::part::{Part, parts_of, phases_of};
 use super::pulses;
@@ -59,6 +60,7 @@ pub(super) fn prescribe(
     if selection.is_empty() {
         return Ok(());
     }
+    driven_fluids::warn(name, &selection, sim);
     let parts = parts_of(&selection, sim);
     let functions: Vec<Expression> = field.functions().cloned().collect();
     pulses::watch(name, &functions, pulses::places_of(&parts), sim);

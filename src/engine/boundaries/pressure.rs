@@ -11,10 +11,10 @@ use super::load_law::LoadLaw;
 use super::part::Part;
 use super::skin_load::{self, LoadKind, LoadedSurface, skins_of};
 use crate::notation::{place, quantity};
-use crate::plugin::{Plugin, Selection, SetupError, SimBuilder};
+use crate::plugin::{BodyKind, Plugin, Selection, SetupError, SimBuilder};
 use crate::scene::{Expression, Select};
 use crate::schedule::{Step, StepError};
-use crate::world::DeformationGradient;
+use crate::world::{BodyId, DeformationGradient};
 
 /// Label and account.
 const LABEL: &str = "pressure";
@@ -63,14 +63,18 @@ impl Plugin for PressureLoad {
         }
         let law = self.on_particles(&selection, sim)?;
         let bodies: Vec<_> = selection.parts.iter().map(|(id, _)| *id).collect();
+        let is_fluid = |id: &BodyId| sim.body(*id).kind == BodyKind::Fluid;
+        let fluids: Vec<BodyId> = bodies.iter().copied().filter(is_fluid).collect();
         sim.add_setup(move |setup| {
-            let without =
-                |id: &&crate::world::BodyId| !setup.world.body_view(**id).0.has::<DeformationGradient>();
+            let without = |id: &&BodyId| !setup.world.body_view(**id).0.has::<DeformationGradient>();
             match bodies.iter().find(without) {
                 Some(id) => Err(SetupError::parameter(
                     format!("bodies[{}].formulation", id.0),
                     "a pressure acts on this body, which has no deformation gradient",
-                    "use `Traction`, or a solid formulation",
+                    match fluids.contains(id) {
+                        true => load::PRESSED_SURFACE,
+                        false => "use `Traction`, or a solid formulation",
+                    },
                 )),
                 None => Ok(()),
             }

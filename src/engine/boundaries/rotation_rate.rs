@@ -41,7 +41,8 @@ impl Plugin for PrescribedRotation {
         let (others, rigid) = split_rigid(&selection, sim)?;
         if let Some((id, _)) = others.parts.first() {
             let message = format!("body `{}` is not rigid", sim.body(*id).name);
-            let help = "`Velocity` with a function of position rotates the particles of other bodies";
+            let help =
+                "`Displacement` with the cosine and sine of the angle rotates the particles of other bodies";
             return Err(SetupError::parameter("on", message, help));
         }
         for body in rigid {

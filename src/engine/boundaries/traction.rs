@@ -46,6 +46,7 @@ impl Plugin for Traction {
         let field = VectorField::new(self.value, sim)?;
         let selection = sim.select_at_start(&Select { surface: None, ..self.on.clone() }, "on")?;
         load::require_movable(&selection, sim)?;
+        load::warn_of_parts(Self::NAME, &self.on, &selection, sim);
         if let Some(skins) = skins_of(&self.on, &selection, sim)? {
             let make = || LoadKind::Traction(field.clone());
             let surface = LoadedSurface { select: &self.on, area: self.area };

@@ -15,7 +15,7 @@ use crate::formulations::fluid::lists::{
     FlowPairs, GapPairs, GapSide, NearRows, SideMotion, Skins, Thickness, ThinBody,
 };
 use crate::formulations::fluid::passes::blocks;
-use crate::formulations::fluid::setup::{advice, checks, rest, start};
+use crate::formulations::fluid::setup::{advice, checks, rest, start, torn_walls};
 use crate::formulations::fluid::walls::{Repulsion, Slip, WallBody, WallShapes, has_suction};
 use crate::neighbors::Periodic;
 use crate::parallel::Lanes4;
@@ -78,6 +78,7 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     let (spin, is_viscous) = (cloud.viscosities.spin, cloud.viscosities.is_viscous);
     advice::unfelt_walls(&walls, is_viscous, sim);
     advice::finer_walls(&walls, is_viscous, sim.body(groups[0].body).spacing, sim);
+    torn_walls::warn(&walls, sim);
     let (walls, touching, gravity) = (advice::walls(sim), sim.touching_pairs(), sim.gravity());
     advice::stiff_interface(&cloud, gravity, sim);
     sim.add_setup(move |setup| {

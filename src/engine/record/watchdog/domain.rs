@@ -42,7 +42,10 @@ impl DomainCheck {
                 FirstOutside(rows.iter().position(|x| !domain.contains(x.0)).map_or(0, |row| start + row + 1))
             });
             if let Some(row) = first.0.checked_sub(1) {
-                let what = format!("position {} outside the domain", rows[row].0);
+                let what = format!(
+                    "position {} outside the domain, which holds nothing back (a `Wall` does, and `outside: Remove` takes out what leaves)",
+                    rows[row].0
+                );
                 return Err(step.unstable(&what, BodyId(k), row));
             }
         }

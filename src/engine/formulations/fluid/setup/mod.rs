@@ -14,5 +14,7 @@ mod roofs;
 
 pub mod advice;
 
+pub mod torn_walls;
+
 pub use sound_speed::estimate as estimate_sound_speeds;
 pub use start::start;

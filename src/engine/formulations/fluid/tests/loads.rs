@@ -155,3 +155,35 @@ fn a_wall_has_its_velocity_before_the_first_force() {
         assert!(viscous < 1e-4 * 10.0, "{motion}: {viscous}");
     }
 }
+
+/// Heavier than what is below them, the particles of the surface sank into the water, which took 38 J; a force
+/// on the particles in a region goes with them.
+#[test]
+fn a_load_on_a_part_of_a_fluid_is_warned_of() {
+    let warns = |condition: &str| {
+        let sim = tank("(0, -9.81)", "", condition);
+        let told = "loads those particles of the fluid `water` that it selects at the start";
+        sim.warnings().iter().any(|warning| warning.contains(told))
+    };
+    assert!(warns(r#"Traction(on: Select(body: "water", face: MaxY), value: (0, -2000))"#));
+    assert!(warns(r#"Force(on: Select(body: "water", face: MaxY), value: (0, -200))"#));
+    assert!(warns(
+        r#"BodyForce(on: Select(body: "water", within: Box(min: (0, 0), max: (0.1, 1))), value: (1, 0))"#
+    ));
+    assert!(!warns(r#"Force(on: Select(body: "water"), value: (100, 0))"#));
+    assert!(!warns(r#"BodyForce(on: Select(), value: ("step(0.1 - x)", 0))"#));
+}
+
+/// A velocity at the start, or an inlet, is what users mean by it.
+#[test]
+fn a_velocity_of_a_fluid_is_warned_of() {
+    let warns = |condition: &str| {
+        let sim = tank("(0, -9.81)", "", condition);
+        sim.warnings().iter().any(|warning| warning.contains("drives those particles of the fluid `water`"))
+    };
+    assert!(warns(r#"Velocity(on: Select(body: "water", face: MinX), value: (0.1, 0))"#));
+    assert!(warns(r#"Displacement(on: Select(), value: ("0.1*t*t", 0))"#));
+    assert!(!warns(
+        r#"Velocity(on: Select(body: "tank"), value: (0.1, 0)), InitialVelocity(on: Select(body: "water"), value: (0.1, 0))"#
+    ));
+}

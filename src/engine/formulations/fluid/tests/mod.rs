@@ -43,6 +43,8 @@ mod moving;
 
 mod falling;
 
+mod torn_walls;
+
 use crate::assembly::build;
 use crate::plugin::Registry;
 use crate::scene::{Source, parse};
