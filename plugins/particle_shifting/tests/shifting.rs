@@ -219,3 +219,35 @@ fn an_uneven_interface_of_two_fluids_stays_whole() {
     let total = |name: &str| sim.ledger().total_named(name);
     assert!(total("particle_shifting") > -1e-3 * total("compression"), "{}", total("particle_shifting"));
 }
+
+/// What the run says of energy that the shift gives to a viscous liquid between a wall at rest and a belt,
+/// whose spacing is `ratio` times that of the liquid.
+fn energy_given(ratio: f64) -> Option<String> {
+    let spacing = 0.01 * ratio;
+    let wall = format!(r#"material: "wall", spacing: {spacing}"#);
+    let text = format!(
+        r#"(dimension: Two, domain: (min: (0, -1), max: (0.1, 1), periodic: [X]),
+            materials: {{"oil": Fluid(density: 1000.0, sound_speed: 20.0, viscosity: 5.0)}},
+            bodies: [
+                (name: "oil", material: "oil", spacing: 0.01, formulation: Fluid(pressure: 1000.0), shape: Box(min: (0, 0), max: (0.1, 0.1)), plugins: [particle_shifting()]),
+                (name: "floor", {wall}, formulation: Wall(slip: No, suction: true), shape: Box(min: (0, -0.04), max: (0.1, 0))),
+                (name: "belt", {wall}, formulation: Wall(slip: No, suction: true, surface_velocity: (0.5, 0)), shape: Box(min: (0, 0.1), max: (0.1, 0.14))),
+            ],
+            time: (end: 0.2))"#
+    );
+    let mut registry = Registry::standard();
+    particle_shifting::register(&mut registry);
+    let built =
+        parse(Source::new("belt.ron", &text)).and_then(|(scene, source)| build(&scene, &source, &registry));
+    let mut sim = built.unwrap_or_else(|error| panic!("{error}"));
+    sim.run(|_| true).expect("a run");
+    sim.warnings().iter().find(|warning| warning.contains("`particle_shifting` has produced")).cloned()
+}
+
+/// The pressure rose from 1 to 18 kPa in half a second, and the advice was to take more particles.
+#[test]
+fn a_shift_that_presses_the_fluid_off_finer_walls_is_told() {
+    let told = energy_given(0.5).expect("a warning");
+    assert!(told.contains("presses the fluid off `floor`"), "{told}");
+    assert!(energy_given(1.0).is_none());
+}

@@ -9,6 +9,9 @@ use crate::world::{BodyId, Damage, Removed};
 /// Share of the energy that walls have given above which it is that of gaps.
 const GAP_SHARE: f64 = 0.5;
 
+/// Spacing over that of the fluid below which a wall or a body is finer.
+const FINE: f64 = 0.95;
+
 /// The bodies that have the plugins proposed.
 pub(super) struct Remedies {
     diffused: Vec<bool>,
@@ -26,6 +29,21 @@ impl Remedies {
             controlled: having("tensile_control"),
             cleared: having("remove_fragments"),
         }
+    }
+
+    /// Advice for a shift beside walls and bodies that are finer than the fluid. Their first row is nearer to
+    /// it, and where they have suction the shift presses the fluid off them, without end where it is sheared.
+    pub fn of_finer_bodies(step: &Step<'_>) -> Option<String> {
+        let cloud = step.resources.try_get::<FlowCloud>().filter(|cloud| cloud.is_confined())?;
+        let spacing = |group: &Group| step.world.body(group.body).spacing;
+        let of_fluid = cloud.groups.iter().find(|group| group.fluid().is_some()).map(spacing)?;
+        let is_finer = |group: &&Group| group.fluid().is_none() && spacing(group) < FINE * of_fluid;
+        let finer = cloud.groups.iter().find(is_finer)?;
+        Some(format!(
+            "it presses the fluid off `{}`, whose particles are finer than those of the fluid, and the pressure grows: give them the spacing of the fluid, or leave the \
+             plugin out",
+            step.world.body(finer.body).name
+        ))
     }
 
     /// Advice for walls that have given so much energy, J.

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::remedies::Remedies;
 use crate::formulations::eulerian::SUPPORT_CHANGE;
-use crate::formulations::fluid::{FlowCloud, FlowParticle, Group};
+use crate::formulations::fluid::{FlowCloud, FlowParticle, Group, SHIFTING_ENERGY};
 use crate::notation::quantity;
 use crate::parallel::{BlockSum, sum_over_blocks};
 use crate::plugin::SimBuilder;
@@ -157,6 +157,11 @@ fn advice(account: &Account, remedies: &Remedies, step: &Step<'_>) -> String {
     if account.name == SUPPORT_CHANGE {
         return "the motion that it drives is not real: more particles across the body need less hourglass control, or `support_follows: false` keeps spheres"
             .to_owned();
+    }
+    if account.name == SHIFTING_ENERGY
+        && let Some(text) = Remedies::of_finer_bodies(step)
+    {
+        return text;
     }
     "the motion that it drives is not real: leave the plugin out, or take a smaller step or more particles"
         .to_owned()
