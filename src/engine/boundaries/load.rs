@@ -116,7 +116,8 @@ pub(super) fn warn_of_parts(name: &str, on: &Select, selection: &Selection, sim:
     let bodies = selection.parts.iter().map(|(id, rows)| (sim.body(*id), rows));
     let warning = |body: &BodyPlan| {
         format!(
-            "`{name}` loads those particles of the fluid `{}` that it selects at the start, wherever they flow: a force in a region is a function of place, `\"5*step(x)\"`,              on all of the fluid, and particles of a surface that are pressed sink into it; {PRESSED_SURFACE}",
+            "`{name}` loads those particles of the fluid `{}` that it selects at the start, wherever they flow: a force in a region is a function of place, `\"5*step(x)\"`, \
+             on all of the fluid, and particles of a surface that are pressed sink into it; {PRESSED_SURFACE}",
             body.name
         )
     };

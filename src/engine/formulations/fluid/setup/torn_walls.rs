@@ -41,7 +41,7 @@ fn of_wall(body: &BodyPlan, sim: &SimBuilder<'_>) -> Option<String> {
         compared.filter_map(|pair| motions.tear(*pair, body)).max_by(|a, b| a.0.total_cmp(&b.0))?;
     Some(format!(
         "a part of the wall `{}` moves by {} against the rest of it, at {}: the flow does not see the edge between the two, so that the pressure is too small there (a piston \
-         has 11 and 6 % too little force, 10 and 20 particles across); make the part that moves a body of its own",
+         has 11 and 6 % too little force, 10 and 20 particles across); make the part that moves a body of its own, at rest with a `surface_velocity` where it slides along itself",
         body.name,
         quantity(slip, "m"),
         place(at)
