@@ -156,8 +156,8 @@ fn a_wall_has_its_velocity_before_the_first_force() {
     }
 }
 
-/// Heavier than what is below them, the particles of the surface sank into the water, which took 38 J; a force
-/// on the particles in a region goes with them.
+/// Heavier than what is below them, the particles of the surface sank into the water, which took 38 J.
+/// A force on the particles in a region goes with them.
 #[test]
 fn a_load_on_a_part_of_a_fluid_is_warned_of() {
     let warns = |condition: &str| {
