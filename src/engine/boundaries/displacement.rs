@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::field::VectorField;
+use super::joined_side;
 use super::prescribed::{self, PrescribedKind};
 use crate::plugin::{Plugin, SetupError, SimBuilder, Support};
 use crate::scene::{Edge, Expression, PerAxis, Select};
@@ -55,6 +56,7 @@ impl Plugin for Displacement {
                 ));
             }
         }
+        joined_side::warn_of_motion(Self::NAME, &field, |x, t| field.at(x, t), &selection, sim);
         prescribed::prescribe(Self::NAME, PrescribedKind::Displacement, field, &selection, sim)
     }
 }

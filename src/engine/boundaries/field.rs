@@ -57,6 +57,12 @@ impl VectorField {
         [0, 1, 2].map(|axis| self.components[axis].is_some())
     }
 
+    /// Whether there is a value along an axis that is not zero everywhere.
+    pub fn acts_along(&self, axis: usize) -> bool {
+        let zero = |f: &Expression| f.is_constant() && f.eval(DVec3::ZERO, 0.0) == 0.0;
+        self.components[axis].as_ref().is_some_and(|f| !zero(f))
+    }
+
     /// Whether the values change with time.
     pub fn depends_on_time(&self) -> bool {
         self.components.iter().flatten().any(Expression::depends_on_time)

@@ -14,6 +14,9 @@ mod force;
 mod image_tests;
 mod initial_displacement;
 mod initial_velocity;
+mod joined_side;
+#[cfg(test)]
+mod joined_side_tests;
 mod load;
 mod load_law;
 mod mean_velocity;

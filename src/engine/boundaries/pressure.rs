@@ -6,6 +6,7 @@ use serde::Deserialize;
 
 use super::broken_skin;
 use super::face_area::{check_area, check_is_side, loaded_area, normal_of};
+use super::joined_side;
 use super::load;
 use super::load_law::LoadLaw;
 use super::part::Part;
@@ -61,6 +62,7 @@ impl Plugin for PressureLoad {
                 self.on_particles(selection, sim)
             });
         }
+        joined_side::refuse_load(&self.on, &selection, sim)?;
         let law = self.on_particles(&selection, sim)?;
         let bodies: Vec<_> = selection.parts.iter().map(|(id, _)| *id).collect();
         let is_fluid = |id: &BodyId| sim.body(*id).kind == BodyKind::Fluid;

@@ -41,8 +41,8 @@ impl Plugin for PrescribedRotation {
         let (others, rigid) = split_rigid(&selection, sim)?;
         if let Some((id, _)) = others.parts.first() {
             let message = format!("body `{}` is not rigid", sim.body(*id).name);
-            let help =
-                "`Displacement` with the cosine and sine of the angle rotates the particles of other bodies";
+            let help = "`Displacement` turns the particles of other bodies, about the origin by an angle a as \
+                `(\"x*(cos(a) - 1) - y*sin(a)\", \"x*sin(a) + y*(cos(a) - 1)\")`";
             return Err(SetupError::parameter("on", message, help));
         }
         for body in rigid {

@@ -6,6 +6,7 @@ use serde::Deserialize;
 use super::broken_skin;
 use super::face_area::{check_area, check_is_side, loaded_area};
 use super::field::VectorField;
+use super::joined_side;
 use super::load::{self, DeadLoad};
 use super::on_rigid::{arms_of, face_part};
 use super::skin_load::{self, LoadKind, LoadedSurface, skins_of};
@@ -58,6 +59,9 @@ impl Plugin for Traction {
                 on_particles(&self.on, self.area, field.clone(), selection, sim)
             };
             return broken_skin::apply(LABEL, skins, &selection, sim, law);
+        }
+        if self.on.face.is_some_and(|face| field.acts_along(face.outward().0)) {
+            joined_side::refuse_load(&self.on, &selection, sim)?;
         }
         let law = on_particles(&self.on, self.area, field, &selection, sim)?;
         load::apply(LABEL, law, &selection, sim, |system| system);

@@ -1,9 +1,11 @@
 //! Particles with prescribed velocity.
 
+use glam::DVec3;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::field::VectorField;
+use super::joined_side;
 use super::prescribed::{self, PrescribedKind};
 use super::turning;
 use crate::notation::{quantity, quantity_to};
@@ -44,8 +46,15 @@ impl Plugin for PrescribedVelocity {
         let field = VectorField::new(self.value, sim)?;
         warn_of_fast_motion(&field, &selection, sim);
         turning::warn(&field, &selection, sim);
+        joined_side::warn_of_motion(Self::NAME, &field, |x, t| way(&field, x, t), &selection, sim);
         prescribed::prescribe(Self::NAME, PrescribedKind::Velocity, field, &selection, sim)
     }
+}
+
+/// The displacement of a particle at a time, by the rule of midpoints.
+fn way(field: &VectorField, x: DVec3, t: f64) -> DVec3 {
+    let step = t / f64::from(TIMES);
+    (0..TIMES).map(|k| field.at(x, step * (f64::from(k) + 0.5)) * step).sum()
 }
 
 /// Largest speed of solids that is no slip of units, in speeds of sound.
