@@ -11,6 +11,9 @@ pub(super) struct NamedPair<'a> {
     pub bodies: [&'a BodyPlan; 2],
     /// Whether a contact before it is between the same bodies.
     pub is_known: bool,
+    /// Whether the contact of the scene is between bodies of which one has a specific heat, these or others
+    /// of a family.
+    pub is_warm: bool,
 }
 
 impl NamedPair<'_> {
@@ -51,8 +54,7 @@ impl NamedPair<'_> {
     /// The problem of a contact whose friction is to heat bodies that have no temperature.
     fn heat_without_temperature(&self) -> Option<Problem> {
         let (a, b) = &self.contact.between;
-        let is_cold = self.bodies.into_iter().all(|body| body.specific_heat().is_none());
-        (self.contact.friction_heat.is_some() && is_cold).then(|| {
+        (self.contact.friction_heat.is_some() && !self.is_warm).then(|| {
             let message = format!("neither `{a}` nor `{b}` is of a material with a specific heat");
             Problem::at_path(format!("contacts[{}].friction_heat", self.number), message)
                 .help("give one of them a material with `specific_heat`, or leave `friction_heat` out")

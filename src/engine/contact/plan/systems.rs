@@ -32,15 +32,21 @@ pub fn add_systems(sim: &mut SimBuilder<'_>, make: MakeLaw<'_>) -> Result<(), Ve
     let mut numbers = Vec::new();
     let numbers_of: BTreeMap<&str, usize> =
         planner.sim.bodies().iter().map(|body| (body.name.as_str(), body.id.0)).collect();
+    // Names of bodies are checked with the scene.
+    let id = |name: &str| BodyId(numbers_of.get(name).copied().unwrap_or(0));
+    let ids = |contact: &Contact| [id(&contact.between.0), id(&contact.between.1)];
+    let is_warm = |body: &BodyId| planner.sim.body(*body).specific_heat().is_some();
+    let warm: BTreeSet<usize> = contacts
+        .iter()
+        .filter(|(_, contact)| ids(contact).iter().any(is_warm))
+        .map(|(number, _)| *number)
+        .collect();
     let mut known = BTreeSet::new();
     for (number, contact) in &contacts {
-        let (a, b) = &contact.between;
-        // Names of bodies are checked with the scene.
-        let id = |name: &str| BodyId(numbers_of.get(name).copied().unwrap_or(0));
-        let [first, second] = [id(a), id(b)];
+        let [first, second] = ids(contact);
         let is_known = !known.insert([first.min(second), first.max(second)]);
         let bodies = [planner.sim.body(first), planner.sim.body(second)];
-        let named = NamedPair { contact, number: *number, bodies, is_known };
+        let named = NamedPair { contact, number: *number, bodies, is_known, is_warm: warm.contains(number) };
         if let Some(problem) = named.refused() {
             problems.push(problem);
             continue;

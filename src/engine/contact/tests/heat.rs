@@ -54,3 +54,24 @@ fn friction_warms_both_sides_by_their_shares() {
         }
     }
 }
+
+/// A contact of families warms the pairs that can be warmed, and is no error for the others.
+#[test]
+fn a_family_may_have_members_without_a_specific_heat() {
+    let mut sim = simulation(&format!(
+        r#"(dimension: Two, gravity: (0, -2e3),
+            materials: {{"metal": J2(density: 8000, young: 1e8, poisson: 0.3, hardening: Linear(yield_stress: 1e9, modulus: 0),
+                                     heating: (specific_heat: {SPECIFIC_HEAT}, temperature: 300)),
+                         "rubber": NeoHookean(density: 1000, young: 1e8, poisson: 0.3)}},
+            bodies: [(name: "block", material: "metal", shape: Box(min: (0, 0.0001), max: (0.02, 0.0101)), spacing: 0.001,
+                      formulation: TotalLagrangian(), velocity: (2, 0)),
+                     (name: "floor", material: "rubber", shape: Box(min: (-0.02, -0.004), max: (0.06, 0)), spacing: 0.001, formulation: Rigid()),
+                     (name: "side", material: "rubber", shape: Box(min: (0.07, 0), max: (0.08, 0.01)), spacing: 0.001, formulation: TotalLagrangian())],
+            conditions: [Fix(on: Select(body: "floor"))],
+            contacts: [Contact(between: ("*", "*"), friction: 0.3, restitution: 0.8, friction_heat: 0.5)],
+            time: (end: 1e-3))"#
+    ));
+    sim.run(|_| true).unwrap();
+    let friction = sim.ledger().total_named("friction");
+    assert!(friction > 0.1 && (heat(&sim, 0) / friction - 0.5).abs() < 0.01, "{friction}");
+}
