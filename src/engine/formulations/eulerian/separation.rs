@@ -22,7 +22,7 @@ const FEW: f64 = 3.0;
 /// The same over the particles in a section of the body: where a curved side of steps of the lattice is
 /// upset, a ring of particles below the steps comes to lie in the side. A body that comes apart opens two
 /// sections.
-const OF_SECTION: f64 = 0.05;
+const OF_SECTION: f64 = 0.1;
 /// Cosine of the angle about the direction away from the neighbours within which an open side has none.
 const CONE: f64 = 0.766;
 /// Steps between two looks.
