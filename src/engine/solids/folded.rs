@@ -22,8 +22,8 @@ pub struct FoldedRows<'a> {
     pub displacement_gradient: &'a [DMat3],
     /// Current Young's modulus E_i, Pa.
     pub modulus: &'a [f64],
-    /// Resistance of a particle that has yielded, Pa, infinite for others: its flow stress, in bodies with a
-    /// reference configuration at least a fifth of the pressure.
+    /// Resistance of a particle that has yielded, Pa, infinite for others: its flow stress, and at least a
+    /// fifth of the pressure but for Eulerian bodies with spherical supports.
     pub strength: &'a [f64],
     /// Values of terms stored in columns.
     pub memory: FoldedMemory<'a>,

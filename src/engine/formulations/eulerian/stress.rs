@@ -179,6 +179,7 @@ impl Stress {
             mass,
             shares: &self.shares,
             plane: *plane,
+            follows: body.follows,
             starts: part.dt == 0.0,
         };
         self.solids.run(of_body, columns, own, &|law, rows, own, block| pass.block(law, rows, own, block));
@@ -280,6 +281,8 @@ struct StressPass<'a> {
     mass: &'a [Mass],
     shares: &'a [f64],
     plane: bool,
+    /// Whether supports follow the deformation, so that the control alone holds particles in their places.
+    follows: bool,
     /// Whether there is no step before.
     starts: bool,
 }
@@ -333,6 +336,9 @@ impl StressPass<'_> {
                 }
             }
         });
+        if self.follows {
+            block.brace(&rows);
+        }
         // Terms that only look: they leave the stresses as they are.
         let mut folded = constitutive.folded(&mut rows, block, stresses);
         let controlled = self.kernel.control.is_some();
