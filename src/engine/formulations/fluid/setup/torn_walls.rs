@@ -24,7 +24,7 @@ const LEAST: f64 = 0.05;
 const SMOOTH: f64 = 2.0;
 
 /// The conditions that prescribe the motion of a particle along each axis.
-type Held = [Option<usize>; 3];
+type HeldAxes = [Option<usize>; 3];
 
 /// Warns of walls of which a part moves against the rest.
 pub fn warn(walls: &[WallBody], sim: &mut SimBuilder<'_>) {
@@ -35,7 +35,7 @@ pub fn warn(walls: &[WallBody], sim: &mut SimBuilder<'_>) {
 /// The warning of one wall.
 fn of_wall(body: &BodyPlan, sim: &SimBuilder<'_>) -> Option<String> {
     let pairs = borders(body, sim);
-    let motions = Motions::of(body, sim);
+    let motions = PartMotions::of(body, sim);
     let compared = pairs.iter().step_by(pairs.len().div_ceil(PAIRS).max(1));
     let (slip, at) =
         compared.filter_map(|pair| motions.tear(*pair, body)).max_by(|a, b| a.0.total_cmp(&b.0))?;
@@ -73,24 +73,24 @@ fn borders(body: &BodyPlan, sim: &SimBuilder<'_>) -> Vec<[usize; 2]> {
 }
 
 /// The conditions that hold a particle of a body.
-fn held(body: &BodyPlan, number: usize, sim: &SimBuilder<'_>) -> Held {
+fn held(body: &BodyPlan, number: usize, sim: &SimBuilder<'_>) -> HeldAxes {
     let row = (body.rows.start + number) as u32;
     sim.prescribed.get(&(body.phase, row)).copied().unwrap_or_default()
 }
 
 /// The motions that conditions prescribe.
-struct Motions {
+struct PartMotions {
     /// Of each condition; none where only the condition knows it.
     values: Vec<Option<MotionOfPlace>>,
     /// Of each particle.
-    held: Vec<Held>,
+    held: Vec<HeldAxes>,
     /// Velocity of the rest, m/s.
     rest: DVec3,
     /// Time between two looks, s.
     apart: f64,
 }
 
-impl Motions {
+impl PartMotions {
     fn of(body: &BodyPlan, sim: &SimBuilder<'_>) -> Self {
         let scene = sim.scene();
         let apart = scene.time.end / f64::from(TIMES);
