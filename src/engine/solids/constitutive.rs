@@ -261,8 +261,8 @@ impl SolidBlock {
     /// Raises the resistance of particles that have yielded to a share of the pressure that they are under.
     /// On a lattice whose moments are not even, a uniform pressure leaves a force of some hundredths of it on
     /// each particle, and in metal that flows nothing but stabilizers holds that force: with the flow stress
-    /// alone, particles move sideways behind strong shocks until the pressure is gone. With spherical supports
-    /// in the present configuration a viscous control holds them.
+    /// alone, particles move sideways behind strong shocks until the pressure is gone. With spherical
+    /// supports in the present configuration a viscous control holds them.
     pub fn brace(&mut self, rows: &SolidRows<'_>) {
         let given = rows.deformation.iter().zip(&*rows.stress).zip(&self.share);
         for (strength, ((f, stress), share)) in self.strength.iter_mut().zip(given) {

@@ -67,10 +67,10 @@ fn block_and_tool(dimension: &str, tool: &str, spacing: f64, density: f64, conta
 /// of a spacing thick or less.
 const TOOLS: [(&str, &str, f64); 5] = [
     ("Two", "Rotate(shape: Box(min: (0.013, 0.001), max: (0.018, 0.4)), angle_degrees: 10)", 0.0025),
-    ("Three", "Sphere(center: (0.013, 0.003, 0.027), radius: 0.002)", 0.002),
-    ("Three", "Cylinder(from: (0.013, 0.001, 0.027), to: (0.013, 0.3, 0.027), radius: 0.002)", 0.004),
-    ("Three", "Cylinder(from: (-0.2, 0.003, 0.027), to: (0.2, 0.003, 0.027), radius: 0.002)", 0.004),
-    ("Three", "Box(min: (-0.22, 0.001, 0.027), max: (0.2, 0.1, 0.031))", 0.004),
+    ("Three", "Sphere(center: (0.013, 0.003, 0.027), radius: 0.002)", 0.001),
+    ("Three", "Cylinder(from: (0.013, 0.001, 0.027), to: (0.013, 0.3, 0.027), radius: 0.002)", 0.002),
+    ("Three", "Cylinder(from: (-0.2, 0.003, 0.027), to: (0.2, 0.003, 0.027), radius: 0.002)", 0.002),
+    ("Three", "Box(min: (-0.22, 0.001, 0.027), max: (0.2, 0.1, 0.031))", 0.002),
 ];
 
 #[test]
