@@ -183,7 +183,7 @@ impl Rigid {
         self.check(plan, mass, &constraint, sim.dimension())?;
         let factor = mass / of_shape.mass;
         let nodes = Nodes::new(shape, &*surface, &plan.sites, plan.spacing, sim.dimension());
-        let distance_of = |node: &RigidNode| node.point.distance(of_shape.center) + node.radius();
+        let distance_of = |node: &RigidNode| node.point.distance(of_shape.center) + node.extent();
         let bounding_radius = nodes.list().iter().map(distance_of).fold(0.0, f64::max);
         let points = of_shape.points * factor;
         let parts = RigidParts {

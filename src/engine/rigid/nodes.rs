@@ -6,7 +6,8 @@ use glam::DVec3;
 
 use super::faces::{NEAR, NearestFaces};
 use super::inertia::sphere_of;
-use super::outline::{Outline, Rim};
+use super::outline::Outline;
+use super::round::Round;
 use crate::shapes::{Shape, Site, Surface};
 use crate::space::Dimension;
 
@@ -14,19 +15,6 @@ use crate::space::Dimension;
 const ACROSS: f64 = -0.1;
 /// Length of an edge that counts as a point, over the spacing.
 const SHORT: f64 = 0.5;
-
-/// Shape of a node.
-#[derive(Clone, Copy, Debug)]
-pub enum Round {
-    /// The point itself.
-    Point,
-    /// The whole body, a sphere or disc of that radius about it, m.
-    Ball(f64),
-    /// The lowest point of a circle about it.
-    Rim(Rim),
-    /// Where a straight edge, whose middle it is, crosses an edge of another body: from there to its end, m.
-    Edge(DVec3),
-}
 
 /// The part of a surface that a node is of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,12 +44,13 @@ pub struct RigidNode {
 }
 
 impl RigidNode {
-    /// Radius of a round node, else zero, m.
+    /// Radius of a round node, the smallest one of an ellipsoid, else zero, m.
     pub fn radius(&self) -> f64 {
         match self.round {
             Round::Point | Round::Edge(_) => 0.0,
             Round::Ball(radius) => radius,
             Round::Rim(rim) => rim.radius,
+            Round::Egg(egg) => egg.extremes()[0],
         }
     }
 
@@ -69,7 +58,16 @@ impl RigidNode {
     pub fn reach(&self) -> f64 {
         match self.round {
             Round::Edge(half) => half.length(),
+            Round::Egg(egg) => egg.extremes()[1],
             Round::Point | Round::Ball(_) | Round::Rim(_) => self.radius(),
+        }
+    }
+
+    /// How far the body reaches from its place, m.
+    pub fn extent(&self) -> f64 {
+        match self.round {
+            Round::Egg(_) => self.reach(),
+            Round::Point | Round::Edge(_) | Round::Ball(_) | Round::Rim(_) => self.radius(),
         }
     }
 
@@ -112,30 +110,12 @@ impl Nodes {
         spacing: f64,
         dimension: Dimension,
     ) -> Self {
-        let outline = Outline::of(shape);
-        let node =
-            |point, feature, round, size| RigidNode { point, feature, round, size, ending: [DVec3::ZERO; 4] };
+        let outline = Outline::of(shape, dimension);
         if let Some((center, radius)) = sphere_of(shape) {
             let ball = node(center, Feature::Corner, Round::Ball(radius), 2.0 * radius);
             return Self { list: vec![ball], outline };
         }
-        let mut list = Vec::new();
-        if let Some(outline) = &outline {
-            let (centers, rim) = outline.rims(spacing);
-            let size = if centers.len() == 1 { 2.0 * rim.radius } else { spacing };
-            list.extend(centers.iter().enumerate().map(|(k, &center)| {
-                let mut rim = node(center, Feature::Corner, Round::Rim(rim), size);
-                // The ends of a cylinder are flat.
-                rim.ending[0] = if k == 0 {
-                    (center - centers[centers.len() - 1]).normalize_or_zero()
-                } else if k + 1 == centers.len() {
-                    (center - centers[0]).normalize()
-                } else {
-                    DVec3::ZERO
-                };
-                rim
-            }));
-        }
+        let mut list = outline.map_or_else(Vec::new, |outline| round_nodes(&outline, spacing));
         let is_round = |x: DVec3| outline.is_some_and(|outline| outline.holds(x));
         let edges = surface.edges(spacing);
         let on_edges = along(&edges, spacing).into_iter().filter(|&(x, _)| !is_round(x));
@@ -183,10 +163,46 @@ impl Nodes {
         self.outline.is_some_and(|outline| outline.holds(x))
     }
 
+    /// Rank of the outline among round ones: where two of them meet, the higher one touches.
+    pub fn roundness(&self) -> u8 {
+        match self.outline {
+            Some(Outline::Ball { .. }) => 3,
+            Some(Outline::Egg { .. }) => 2,
+            Some(Outline::Side { .. }) => 1,
+            None => 0,
+        }
+    }
+
     /// Whether the round outline has circles in every plane: nothing can be between them.
     pub fn is_ball(&self) -> bool {
         matches!(self.outline, Some(Outline::Ball { .. }))
     }
+}
+
+/// A node beside which no face ends.
+fn node(point: DVec3, feature: Feature, round: Round, size: f64) -> RigidNode {
+    RigidNode { point, feature, round, size, ending: [DVec3::ZERO; 4] }
+}
+
+/// The circles of a round outline, or its ellipsoid.
+fn round_nodes(outline: &Outline, spacing: f64) -> Vec<RigidNode> {
+    let (centers, round) = outline.rounds(spacing);
+    let size = match round {
+        Round::Rim(rim) if centers.len() == 1 => 2.0 * rim.radius,
+        _ => spacing,
+    };
+    let last = centers.len() - 1;
+    let of = |(k, &center): (usize, &DVec3)| {
+        let mut round = node(center, Feature::Corner, round, size);
+        // The ends of a cylinder are flat.
+        round.ending[0] = match k {
+            0 => (center - centers[last]).normalize_or_zero(),
+            _ if k == last => (center - centers[0]).normalize(),
+            _ => DVec3::ZERO,
+        };
+        round
+    };
+    centers.iter().enumerate().map(of).collect()
 }
 
 /// The ends of edges, which are corners, and points between them. Of points in one cell of half a spacing the

@@ -1,30 +1,33 @@
-//! Round outlines: of a disc, ring, ball or shell a sphere, of a cylinder or tube its side.
+//! Round outlines: of a disc, ring, ball or shell a sphere, of a stretched sphere an ellipsoid, of a cylinder
+//! or tube its side.
 //!
 //! A body that rolls must not roll over corners. Where its outline is round its contact nodes are circles,
 //! whose lowest point is known exactly, instead of points.
 
 use glam::{DQuat, DVec3};
 
+use super::egg::Egg;
+use super::rim::Rim;
+use super::round::Round;
 use crate::shapes::Shape;
+use crate::space::Dimension;
 
 /// Distance from an outline within which a point is on it, over its radius.
 const ON_IT: f64 = 1e-6;
-/// Sine of the angle between a plane and the plane of a rim below which the rim lies flat: no point of it is
-/// the lowest.
-const FLAT: f64 = 1e-4;
-
 /// The round surface that bounds a body towards the outside.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Outline {
+pub(crate) enum Outline {
     /// A sphere; in two dimensions a circle.
     Ball { center: DVec3, radius: f64 },
+    /// An ellipsoid; in two dimensions an ellipse.
+    Egg { center: DVec3, egg: Egg },
     /// The side of a cylinder between the centres of its ends.
     Side { ends: [DVec3; 2], radius: f64 },
 }
 
 impl Outline {
     /// The outline of a shape, if it is round. Holes of a body do not cut its surface.
-    pub fn of(shape: &Shape) -> Option<Self> {
+    pub fn of(shape: &Shape, dimension: Dimension) -> Option<Self> {
         match shape {
             Shape::Sphere { center, radius: outer }
             | Shape::Ring { center, outer, .. }
@@ -32,26 +35,45 @@ impl Outline {
             Shape::Cylinder { from, to, radius: outer } | Shape::Tube { from, to, outer, .. } => {
                 Some(Self::Side { ends: [from.0, to.0], radius: *outer })
             }
-            Shape::Difference(shape, _) => Self::of(shape),
-            Shape::Translate { shape, by } => Some(Self::of(shape)?.moved(|x| x + by.0)),
+            Shape::Difference(shape, _) => Self::of(shape, dimension),
+            Shape::Translate { shape, by } => {
+                Some(Self::of(shape, dimension)?.moved(DQuat::IDENTITY, 1.0, |x| x + by.0))
+            }
             Shape::Rotate { shape, axis, angle_degrees, about } => {
                 let turn = DQuat::from_axis_angle(axis.0.try_normalize()?, angle_degrees.to_radians());
-                Some(Self::of(shape)?.moved(|x| about.0 + turn * (x - about.0)))
+                Some(Self::of(shape, dimension)?.moved(turn, 1.0, |x| about.0 + turn * (x - about.0)))
+            }
+            Shape::Scale { shape, by, about } => {
+                let by = if dimension == Dimension::Three { by.0 } else { by.0.with_z(0.0) };
+                let place = |x: DVec3| about.0 + by * (x - about.0);
+                let is_even = by.x == by.y && (dimension == Dimension::Two || by.x == by.z);
+                match (&**shape, is_even) {
+                    (_, true) => Some(Self::of(shape, dimension)?.moved(DQuat::IDENTITY, by.x, place)),
+                    (Shape::Sphere { center, radius }, false) => {
+                        Some(Self::Egg { center: place(center.0), egg: Egg::new(by * *radius) })
+                    }
+                    _ => None,
+                }
             }
             _ => None,
         }
     }
 
-    fn moved(self, to: impl Fn(DVec3) -> DVec3) -> Self {
+    /// The same where `to` moves places, a turn and a change of lengths by a factor.
+    fn moved(self, turn: DQuat, factor: f64, to: impl Fn(DVec3) -> DVec3) -> Self {
         match self {
-            Self::Ball { center, radius } => Self::Ball { center: to(center), radius },
-            Self::Side { ends, radius } => Self::Side { ends: ends.map(to), radius },
+            Self::Ball { center, radius } => Self::Ball { center: to(center), radius: factor * radius },
+            Self::Egg { center, egg } => {
+                Self::Egg { center: to(center), egg: egg.turned(turn).scaled(factor) }
+            }
+            Self::Side { ends, radius } => Self::Side { ends: ends.map(to), radius: factor * radius },
         }
     }
 
     /// Whether a place on the surface of the body is on the outline.
     pub fn holds(&self, x: DVec3) -> bool {
         let (distance, radius) = match self {
+            Self::Egg { center, egg } => return egg.holds(x - *center, ON_IT),
             Self::Ball { center, radius } => (x.distance(*center), radius),
             Self::Side { ends: [from, to], radius } => {
                 ((x - *from).reject_from(*to - *from).length(), radius)
@@ -60,59 +82,18 @@ impl Outline {
         (distance - radius).abs() < ON_IT * radius
     }
 
-    /// The centres of circles that represent it, not much more than a spacing apart, and their shape.
-    pub fn rims(&self, spacing: f64) -> (Vec<DVec3>, Rim) {
+    /// The centres of circles that represent it, not much more than a spacing apart, and their shape, or the
+    /// centre of the ellipsoid.
+    pub fn rounds(&self, spacing: f64) -> (Vec<DVec3>, Round) {
         match *self {
-            Self::Ball { center, radius } => (vec![center], Rim { axis: DVec3::ZERO, radius }),
+            Self::Ball { center, radius } => (vec![center], Round::Rim(Rim::ball(radius))),
+            Self::Egg { center, egg } => (vec![center], Round::Egg(egg)),
             Self::Side { ends: [from, to], radius } => {
                 let parts = (from.distance(to) / spacing).round().max(1.0) as usize;
                 let at = |k: usize| from.lerp(to, k as f64 / parts as f64);
-                ((0..=parts).map(at).collect(), Rim::new((to - from).normalize(), radius))
+                ((0..=parts).map(at).collect(), Round::Rim(Rim::new((to - from).normalize(), radius)))
             }
         }
-    }
-}
-
-/// A circle about an axis; without an axis a sphere.
-#[derive(Clone, Copy, Debug)]
-pub struct Rim {
-    axis: DVec3,
-    /// Radius, m.
-    pub radius: f64,
-}
-
-impl Rim {
-    /// A circle about that unit vector.
-    pub fn new(axis: DVec3, radius: f64) -> Self {
-        Self { axis, radius }
-    }
-
-    /// Whether it is a sphere.
-    pub fn is_ball(&self) -> bool {
-        self.axis == DVec3::ZERO
-    }
-
-    /// The same circle with its axis turned.
-    pub fn turned(self, turn: DQuat) -> Self {
-        Self { axis: turn * self.axis, ..self }
-    }
-
-    /// Two unit vectors in its plane, at right angles.
-    pub fn axes(&self) -> (DVec3, DVec3) {
-        self.axis.any_orthonormal_pair()
-    }
-
-    /// Unit vector along it at the end of an arm from the centre.
-    pub fn ahead(&self, arm: DVec3) -> DVec3 {
-        self.axis.cross(arm) / self.radius
-    }
-
-    /// From the centre to the point that is deepest behind a plane of that outward normal; none where the rim
-    /// lies flat on it.
-    pub fn lowest(&self, normal: DVec3) -> Option<DVec3> {
-        let across = normal - self.axis * normal.dot(self.axis);
-        let length = across.length();
-        (length > FLAT).then(|| across * (-self.radius / length))
     }
 }
 
@@ -124,8 +105,9 @@ mod tests {
     fn a_tube_has_rims_from_end_to_end() {
         let tube = "Tube(from: (0.0, 0.0, 0.0), to: (0.0, 0.0, 2.0), inner: 0.5, outer: 1.0)";
         let turned = format!("Rotate(shape: {tube}, axis: (0.0, 1.0, 0.0), angle_degrees: 90.0)");
-        let outline = Outline::of(&ron::from_str(&turned).expect("a shape")).expect("a tube is round");
-        let (centers, rim) = outline.rims(0.3);
+        let outline = Outline::of(&ron::from_str(&turned).expect("a shape"), Dimension::Three)
+            .expect("a tube is round");
+        let (centers, Round::Rim(rim)) = outline.rounds(0.3) else { panic!("no circles") };
         assert_eq!(centers.len(), 8);
         assert!(centers[7].distance(DVec3::new(2.0, 0.0, 0.0)) < 1e-12);
         let down = rim.lowest(DVec3::new(0.6, 0.8, 0.0)).expect("it stands");

@@ -4,6 +4,8 @@
 mod circle;
 mod crossing;
 
+mod egg;
+
 mod error;
 
 mod motion;

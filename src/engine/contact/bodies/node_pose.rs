@@ -4,6 +4,7 @@ use glam::{DQuat, DVec3};
 
 use super::circle::CircleBeside;
 use super::crossing::Crossing;
+use super::egg::EggBeside;
 use crate::rigid::{RigidNode, Round};
 use crate::shapes::{Surface, SurfacePoint};
 
@@ -17,9 +18,10 @@ pub(in crate::contact) struct NodePose {
 }
 
 impl NodePose {
-    /// The nearest point of a surface. For a circle it is that to its deepest point, and for a ball to its
-    /// lowest one over the plane that is tangential to the surface at the point nearest to the centre. None
-    /// where a circle lies flat or is deepest below a ridge, and where an edge crosses none of the surface.
+    /// The nearest point of a surface. For a circle or an ellipsoid it is that to its deepest point, and for
+    /// a ball to its lowest one over the plane that is tangential to the surface at the point nearest to the
+    /// centre. None where a circle lies flat, where a circle or an ellipsoid is deepest below a ridge, and
+    /// where an edge crosses none of the surface.
     pub fn nearest(&self, node: &RigidNode, surface: &dyn Surface) -> Option<SurfacePoint> {
         if let Some(crossing) = self.crossing(node, surface) {
             return Some(crossing?.at);
@@ -29,6 +31,9 @@ impl NodePose {
             && !rim.is_ball()
         {
             return CircleBeside { surface, center, rim: rim.turned(self.turn), size: node.size }.deepest();
+        }
+        if let Round::Egg(egg) = node.round {
+            return EggBeside { surface, center, egg: egg.turned(self.turn) }.deepest();
         }
         let nearest = surface.closest(center);
         let Some(arm) = self.lowest_of_ball(node, nearest.normal) else { return Some(nearest) };

@@ -1,5 +1,7 @@
 //! Contact nodes: particles of a deformable body, or points of a rigid one.
 
+use std::cmp::Ordering;
+
 use glam::{DQuat, DVec3};
 
 use super::crossing::Crossing;
@@ -99,7 +101,7 @@ impl NodeView<'_> {
             Self::Particles(members) => members.shape(i),
             Self::Rigid(body) => match body.nodes.list()[i].round {
                 Round::Ball(radius) => ParticleShape { radius, gradient: None },
-                Round::Point | Round::Rim(_) | Round::Edge(_) => {
+                Round::Point | Round::Rim(_) | Round::Egg(_) | Round::Edge(_) => {
                     ParticleShape { radius: 0.0, gradient: None }
                 }
             },
@@ -148,9 +150,9 @@ impl NodeView<'_> {
     }
 
     /// Whether contact at a point of a tool is left to the nodes of the tool, because its round outline has
-    /// circles as nodes. The circles of a ball lie in every plane, and take precedence over the rims of a
-    /// cylinder; of two equal ones the first contact keeps it, and the second one those at the ends of
-    /// cylinders, which may meet the side of the other one anywhere.
+    /// circles as nodes, or is an ellipsoid. The circles of a ball lie in every plane, and take precedence
+    /// over an ellipsoid, and that over the rims of a cylinder; of two equal ones the first contact keeps it,
+    /// and the second one those at the ends of cylinders, which may meet the side of the other one anywhere.
     pub fn leaves_to(&self, i: usize, tool: &RigidBody, point: DVec3, turn: NodeTurn) -> bool {
         let Self::Rigid(body) = self else { return false };
         if turn == NodeTurn::Alone || !tool.nodes.is_round(point) {
@@ -158,10 +160,12 @@ impl NodeView<'_> {
         }
         let node = &body.nodes.list()[i];
         match node.round {
-            Round::Rim(_) if body.nodes.is_ball() == tool.nodes.is_ball() => {
-                turn == NodeTurn::Second && !node.is_end()
-            }
-            Round::Rim(_) => tool.nodes.is_ball(),
+            Round::Rim(_) | Round::Egg(_) => match body.nodes.roundness().cmp(&tool.nodes.roundness()) {
+                Ordering::Equal => turn == NodeTurn::Second && !node.is_end(),
+                // The edge at the end of a cylinder is an edge.
+                Ordering::Less => tool.nodes.is_ball() || !node.is_end(),
+                Ordering::Greater => false,
+            },
             // The corner of a body may come between two rims.
             Round::Ball(_) | Round::Point | Round::Edge(_) => node.is_of_face() || tool.nodes.is_ball(),
         }

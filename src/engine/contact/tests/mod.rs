@@ -4,6 +4,7 @@ mod apart;
 mod at_rest;
 mod crossing_edges;
 mod deformed;
+mod eggs;
 mod heat;
 mod images;
 mod impacts;

@@ -49,6 +49,7 @@ fn wheels_accelerate_down_a_slope_as_their_inertia_says() {
     let of_shell = 0.4 * (1.0 - ratio(5)) / (1.0 - ratio(3));
     for (shape, k) in [
         (format!("Cylinder({ends}, radius: 0.1)"), 0.5),
+        ("Scale(shape: Cylinder(from: (0, 0.05, -0.02), to: (0, 0.05, 0.02), radius: 0.05), by: (2, 2, 2))".to_owned(), 0.5),
         (format!("Tube({ends}, inner: 0.06, outer: 0.1)"), 0.5 * (1.0 + ratio(2))),
         ("Shell(center: (0, 0.1, 0), inner: 0.06, outer: 0.1)".to_owned(), of_shell),
     ] {
