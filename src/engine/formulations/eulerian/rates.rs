@@ -70,7 +70,9 @@ impl Run for VelocityGradients {
                 if view.has::<DilatationRate>() { Some(view.read::<DilatationRate>()?) } else { None };
             let mut metric = view.write::<SupportMetric>()?;
             advance(&mut packed, (&mut deformation, &mut metric), dilatation.as_deref(), step.clock.dt);
-            packed.load_supports(&metric);
+            if packed.lists.bodies.iter().any(|body| body.is_stretched) {
+                packed.load_supports(&metric);
+            }
             if step.clock.step.is_multiple_of(supports::EVERY) {
                 let damage = if view.has::<Damage>() { Some(view.read_near::<Damage>()?) } else { None };
                 if packed.renew_supports(&mut metric, &deformation, damage.as_deref()) {
