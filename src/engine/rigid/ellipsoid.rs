@@ -4,14 +4,14 @@ use glam::{DQuat, DVec3};
 
 /// An ellipsoid about a place; in two dimensions an ellipse.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Egg {
+pub struct RigidEllipsoid {
     /// Rotation from the axes of space to its own.
     turn: DQuat,
     /// Half the lengths along its own axes, zero along the third one in two dimensions, m.
     semi_axes: DVec3,
 }
 
-impl Egg {
+impl RigidEllipsoid {
     /// One along the axes of space.
     pub(super) fn new(semi_axes: DVec3) -> Self {
         Self { turn: DQuat::IDENTITY, semi_axes }
@@ -66,13 +66,13 @@ mod tests {
     fn the_lowest_point_is_as_deep_as_the_support_function_says() {
         let a = DVec3::new(0.3, 0.2, 0.15);
         let turn = DQuat::from_axis_angle(DVec3::new(1.0, -2.0, 0.5).normalize(), 0.7);
-        let egg = Egg::new(a).turned(turn);
+        let ellipsoid = RigidEllipsoid::new(a).turned(turn);
         for normal in [DVec3::Z, DVec3::new(1.0, 2.0, -3.0).normalize(), DVec3::X] {
-            let arm = egg.arm(egg.lowest(normal));
+            let arm = ellipsoid.arm(ellipsoid.lowest(normal));
             let support = (a * (turn.inverse() * normal)).length();
             assert!((arm.dot(normal) + support).abs() < 1e-14, "{normal}");
-            assert!(egg.holds(arm, 1e-12) && !egg.holds(0.999 * arm, 1e-6));
+            assert!(ellipsoid.holds(arm, 1e-12) && !ellipsoid.holds(0.999 * arm, 1e-6));
         }
-        assert_eq!(egg.extremes(), [0.15, 0.3]);
+        assert_eq!(ellipsoid.extremes(), [0.15, 0.3]);
     }
 }

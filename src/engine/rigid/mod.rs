@@ -2,7 +2,7 @@
 
 mod body;
 mod constraint;
-mod egg;
+mod ellipsoid;
 mod faces;
 mod followed;
 mod formulation;
@@ -20,7 +20,7 @@ mod wrench;
 
 pub use body::{RIGID_BODIES, RigidBodies, RigidBody, RigidState};
 pub use constraint::{Drive, DrivenBody, DrivenRotation, HalvedBody};
-pub use egg::Egg;
+pub use ellipsoid::RigidEllipsoid;
 pub use followed::{MovingFunction, SHORTEST_FOLLOWED, change_in_run, looked_ahead};
 pub(crate) use formulation::checked_axis;
 pub use formulation::{Rigid, Rotation};

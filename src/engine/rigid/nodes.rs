@@ -50,7 +50,7 @@ impl RigidNode {
             Round::Point | Round::Edge(_) => 0.0,
             Round::Ball(radius) => radius,
             Round::Rim(rim) => rim.radius,
-            Round::Egg(egg) => egg.extremes()[0],
+            Round::Ellipsoid(ellipsoid) => ellipsoid.extremes()[0],
         }
     }
 
@@ -58,7 +58,7 @@ impl RigidNode {
     pub fn reach(&self) -> f64 {
         match self.round {
             Round::Edge(half) => half.length(),
-            Round::Egg(egg) => egg.extremes()[1],
+            Round::Ellipsoid(ellipsoid) => ellipsoid.extremes()[1],
             Round::Point | Round::Ball(_) | Round::Rim(_) => self.radius(),
         }
     }
@@ -66,7 +66,7 @@ impl RigidNode {
     /// How far the body reaches from its place, m.
     pub fn extent(&self) -> f64 {
         match self.round {
-            Round::Egg(_) => self.reach(),
+            Round::Ellipsoid(_) => self.reach(),
             Round::Point | Round::Edge(_) | Round::Ball(_) | Round::Rim(_) => self.radius(),
         }
     }
@@ -167,7 +167,7 @@ impl Nodes {
     pub fn roundness(&self) -> u8 {
         match self.outline {
             Some(Outline::Ball { .. }) => 3,
-            Some(Outline::Egg { .. }) => 2,
+            Some(Outline::Ellipsoid { .. }) => 2,
             Some(Outline::Side { .. }) => 1,
             None => 0,
         }

@@ -6,7 +6,7 @@
 
 use glam::{DQuat, DVec3};
 
-use super::egg::Egg;
+use super::ellipsoid::RigidEllipsoid;
 use super::rim::Rim;
 use super::round::Round;
 use crate::shapes::Shape;
@@ -20,7 +20,7 @@ pub(crate) enum Outline {
     /// A sphere; in two dimensions a circle.
     Ball { center: DVec3, radius: f64 },
     /// An ellipsoid; in two dimensions an ellipse.
-    Egg { center: DVec3, egg: Egg },
+    Ellipsoid { center: DVec3, ellipsoid: RigidEllipsoid },
     /// The side of a cylinder between the centres of its ends.
     Side { ends: [DVec3; 2], radius: f64 },
 }
@@ -49,9 +49,10 @@ impl Outline {
                 let is_even = by.x == by.y && (dimension == Dimension::Two || by.x == by.z);
                 match (&**shape, is_even) {
                     (_, true) => Some(Self::of(shape, dimension)?.moved(DQuat::IDENTITY, by.x, place)),
-                    (Shape::Sphere { center, radius }, false) => {
-                        Some(Self::Egg { center: place(center.0), egg: Egg::new(by * *radius) })
-                    }
+                    (Shape::Sphere { center, radius }, false) => Some(Self::Ellipsoid {
+                        center: place(center.0),
+                        ellipsoid: RigidEllipsoid::new(by * *radius),
+                    }),
                     _ => None,
                 }
             }
@@ -63,8 +64,8 @@ impl Outline {
     fn moved(self, turn: DQuat, factor: f64, to: impl Fn(DVec3) -> DVec3) -> Self {
         match self {
             Self::Ball { center, radius } => Self::Ball { center: to(center), radius: factor * radius },
-            Self::Egg { center, egg } => {
-                Self::Egg { center: to(center), egg: egg.turned(turn).scaled(factor) }
+            Self::Ellipsoid { center, ellipsoid } => {
+                Self::Ellipsoid { center: to(center), ellipsoid: ellipsoid.turned(turn).scaled(factor) }
             }
             Self::Side { ends, radius } => Self::Side { ends: ends.map(to), radius: factor * radius },
         }
@@ -73,7 +74,7 @@ impl Outline {
     /// Whether a place on the surface of the body is on the outline.
     pub fn holds(&self, x: DVec3) -> bool {
         let (distance, radius) = match self {
-            Self::Egg { center, egg } => return egg.holds(x - *center, ON_IT),
+            Self::Ellipsoid { center, ellipsoid } => return ellipsoid.holds(x - *center, ON_IT),
             Self::Ball { center, radius } => (x.distance(*center), radius),
             Self::Side { ends: [from, to], radius } => {
                 ((x - *from).reject_from(*to - *from).length(), radius)
@@ -87,7 +88,7 @@ impl Outline {
     pub fn rounds(&self, spacing: f64) -> (Vec<DVec3>, Round) {
         match *self {
             Self::Ball { center, radius } => (vec![center], Round::Rim(Rim::ball(radius))),
-            Self::Egg { center, egg } => (vec![center], Round::Egg(egg)),
+            Self::Ellipsoid { center, ellipsoid } => (vec![center], Round::Ellipsoid(ellipsoid)),
             Self::Side { ends: [from, to], radius } => {
                 let parts = (from.distance(to) / spacing).round().max(1.0) as usize;
                 let at = |k: usize| from.lerp(to, k as f64 / parts as f64);

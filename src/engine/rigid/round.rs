@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::egg::Egg;
+use super::ellipsoid::RigidEllipsoid;
 use super::rim::Rim;
 
 /// Shape of a node.
@@ -15,7 +15,7 @@ pub enum Round {
     /// The lowest point of a circle about it.
     Rim(Rim),
     /// The lowest point of an ellipsoid about it.
-    Egg(Egg),
+    Ellipsoid(RigidEllipsoid),
     /// Where a straight edge, whose middle it is, crosses an edge of another body: from there to its end, m.
     Edge(DVec3),
 }

@@ -10,7 +10,7 @@ use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 
-use crate::rigid::Egg;
+use crate::rigid::RigidEllipsoid;
 use crate::shapes::{Surface, SurfacePoint};
 
 /// Difference of two directions on the sphere that was stretched, below which they are one.
@@ -34,10 +34,10 @@ const APART: f64 = 0.75;
 const HIGHER: f64 = 0.1;
 
 /// An ellipsoid beside a surface, in the reference configuration of that.
-pub(super) struct EggBeside<'a> {
+pub(super) struct EllipsoidBeside<'a> {
     pub surface: &'a dyn Surface,
     pub center: DVec3,
-    pub egg: Egg,
+    pub ellipsoid: RigidEllipsoid,
 }
 
 /// Where a descent has come to.
@@ -49,13 +49,13 @@ struct Reached {
     is_smooth: bool,
 }
 
-impl EggBeside<'_> {
+impl EllipsoidBeside<'_> {
     /// The point of the surface nearest to the deepest point of the ellipsoid; none where that is below a
     /// ridge.
     pub fn deepest(&self) -> Option<SurfacePoint> {
         let from_center = self.surface.closest(self.center);
-        let first = self.egg.lowest(from_center.normal);
-        let [_, longest] = self.egg.extremes();
+        let first = self.ellipsoid.lowest(from_center.normal);
+        let [_, longest] = self.ellipsoid.extremes();
         if from_center.signed_distance > 2.0 * longest {
             return Some(self.at(first));
         }
@@ -89,13 +89,13 @@ impl EggBeside<'_> {
     }
 
     fn places(&self) -> usize {
-        PLACES[usize::from(!self.egg.is_flat())]
+        PLACES[usize::from(!self.ellipsoid.is_flat())]
     }
 
     /// Direction to a place: evenly around an ellipse, along a spiral on an ellipsoid.
     fn place(&self, k: usize) -> DVec3 {
         let (part, count) = (k as f64 + 0.5, self.places() as f64);
-        if self.egg.is_flat() {
+        if self.ellipsoid.is_flat() {
             let (sine, cosine) = (TAU * part / count).sin_cos();
             return DVec3::new(cosine, sine, 0.0);
         }
@@ -107,9 +107,9 @@ impl EggBeside<'_> {
 
     /// Goes down from a direction to where the normals are against each other.
     fn descend(&self, start: DVec3) -> Reached {
-        let [_, longest] = self.egg.extremes();
+        let [_, longest] = self.ellipsoid.extremes();
         let (mut direction, mut found) = (start, self.at(start));
-        let (mut length, mut way) = (1.0, self.egg.lowest(found.normal) - direction);
+        let (mut length, mut way) = (1.0, self.ellipsoid.lowest(found.normal) - direction);
         for _ in 0..STEPS {
             if way.length() < ALIKE {
                 break;
@@ -122,7 +122,7 @@ impl EggBeside<'_> {
                 (at.signed_distance <= found.signed_distance + ROUND_OFF * longest).then_some((next, at))
             });
             let Some((next, at)) = next else { break };
-            let next_way = self.egg.lowest(at.normal) - next;
+            let next_way = self.ellipsoid.lowest(at.normal) - next;
             // The step that the last one would have needed (J. Barzilai, J. M. Borwein, 1988).
             let moved = next - direction;
             let fall = -moved.dot(next_way - way);
@@ -133,7 +133,7 @@ impl EggBeside<'_> {
     }
 
     fn at(&self, direction: DVec3) -> SurfacePoint {
-        self.surface.closest(self.center + self.egg.arm(direction))
+        self.surface.closest(self.center + self.ellipsoid.arm(direction))
     }
 }
 
@@ -157,7 +157,7 @@ mod tests {
     fn the_deepest_point_of_an_ellipsoid_is_found() {
         let text = "Rotate(shape: Scale(shape: Sphere(center: (0, 0, 0), radius: 1), by: (0.3, 0.2, 0.1)), axis: (1, 2, 0.5), angle_degrees: 40)";
         let outline = Outline::of(&shape(text), Dimension::Three).expect("it is round");
-        let (centers, Round::Egg(egg)) = outline.rounds(0.05) else { panic!("no ellipsoid") };
+        let (centers, Round::Ellipsoid(ellipsoid)) = outline.rounds(0.05) else { panic!("no ellipsoid") };
         for (text, height, touches) in [
             ("HalfSpace(point: (0, 0, 0), normal: (0.2, 0.1, 1))", 0.15, true),
             ("Sphere(center: (0.05, 0, -0.03), radius: 0.03)", 0.14, true),
@@ -172,12 +172,14 @@ mod tests {
         ] {
             let surface = shape(text).surface(Dimension::Three, Path::new("."), "shape").expect("a surface");
             let center = centers[0] + if touches { height * DVec3::Z } else { height * DVec3::Y };
-            let found = EggBeside { surface: &*surface, center, egg }.deepest();
+            let found = EllipsoidBeside { surface: &*surface, center, ellipsoid }.deepest();
             let at = |k: u32| {
                 let (z, angle) = (f64::from(k) / 1e5 - 1.0, f64::from(k) * PI * (5f64.sqrt() - 1.0) % TAU);
                 let (sine, cosine) = angle.sin_cos();
                 let flat = (1.0 - z * z).max(0.0).sqrt();
-                surface.closest(center + egg.arm(DVec3::new(flat * cosine, flat * sine, z))).signed_distance
+                surface
+                    .closest(center + ellipsoid.arm(DVec3::new(flat * cosine, flat * sine, z)))
+                    .signed_distance
             };
             let least = (0..=200_000).map(at).fold(f64::INFINITY, f64::min);
             assert!(least < -1e-4, "{text}: {least}");

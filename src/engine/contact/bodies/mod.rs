@@ -4,7 +4,7 @@
 mod circle;
 mod crossing;
 
-mod egg;
+mod ellipsoid;
 
 mod error;
 

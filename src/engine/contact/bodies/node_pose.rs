@@ -4,7 +4,7 @@ use glam::{DQuat, DVec3};
 
 use super::circle::CircleBeside;
 use super::crossing::Crossing;
-use super::egg::EggBeside;
+use super::ellipsoid::EllipsoidBeside;
 use crate::rigid::{RigidNode, Round};
 use crate::shapes::{Surface, SurfacePoint};
 
@@ -32,8 +32,8 @@ impl NodePose {
         {
             return CircleBeside { surface, center, rim: rim.turned(self.turn), size: node.size }.deepest();
         }
-        if let Round::Egg(egg) = node.round {
-            return EggBeside { surface, center, egg: egg.turned(self.turn) }.deepest();
+        if let Round::Ellipsoid(ellipsoid) = node.round {
+            return EllipsoidBeside { surface, center, ellipsoid: ellipsoid.turned(self.turn) }.deepest();
         }
         let nearest = surface.closest(center);
         let Some(arm) = self.lowest_of_ball(node, nearest.normal) else { return Some(nearest) };

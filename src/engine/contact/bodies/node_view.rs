@@ -101,7 +101,7 @@ impl NodeView<'_> {
             Self::Particles(members) => members.shape(i),
             Self::Rigid(body) => match body.nodes.list()[i].round {
                 Round::Ball(radius) => ParticleShape { radius, gradient: None },
-                Round::Point | Round::Rim(_) | Round::Egg(_) | Round::Edge(_) => {
+                Round::Point | Round::Rim(_) | Round::Ellipsoid(_) | Round::Edge(_) => {
                     ParticleShape { radius: 0.0, gradient: None }
                 }
             },
@@ -160,12 +160,14 @@ impl NodeView<'_> {
         }
         let node = &body.nodes.list()[i];
         match node.round {
-            Round::Rim(_) | Round::Egg(_) => match body.nodes.roundness().cmp(&tool.nodes.roundness()) {
-                Ordering::Equal => turn == NodeTurn::Second && !node.is_end(),
-                // The edge at the end of a cylinder is an edge.
-                Ordering::Less => tool.nodes.is_ball() || !node.is_end(),
-                Ordering::Greater => false,
-            },
+            Round::Rim(_) | Round::Ellipsoid(_) => {
+                match body.nodes.roundness().cmp(&tool.nodes.roundness()) {
+                    Ordering::Equal => turn == NodeTurn::Second && !node.is_end(),
+                    // The edge at the end of a cylinder is an edge.
+                    Ordering::Less => tool.nodes.is_ball() || !node.is_end(),
+                    Ordering::Greater => false,
+                }
+            }
             // The corner of a body may come between two rims.
             Round::Ball(_) | Round::Point | Round::Edge(_) => node.is_of_face() || tool.nodes.is_ball(),
         }

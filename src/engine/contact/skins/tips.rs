@@ -149,10 +149,10 @@ impl Tip {
         match self.round {
             Round::Point | Round::Edge(_) => Some((of(self.point, 0.0)?, 0.0)),
             Round::Ball(radius) => Some((of(self.point, radius)?, radius)),
-            Round::Egg(egg) => {
-                let foot = of(self.point, egg.extremes()[1])?;
-                let lowest = egg.lowest(on.tool.state.rotation.inverse() * foot.normal);
-                Some((of(self.point + egg.arm(lowest), 0.0)?, 0.0))
+            Round::Ellipsoid(ellipsoid) => {
+                let foot = of(self.point, ellipsoid.extremes()[1])?;
+                let lowest = ellipsoid.lowest(on.tool.state.rotation.inverse() * foot.normal);
+                Some((of(self.point + ellipsoid.arm(lowest), 0.0)?, 0.0))
             }
             Round::Rim(rim) => {
                 let foot = of(self.point, rim.radius)?;

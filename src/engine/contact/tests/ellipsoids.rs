@@ -49,12 +49,12 @@ fn an_ellipse_rocks_on_a_floor_with_its_period() {
                 r#"(dimension: {dimension}, gravity: (0, -{G}, 0),
                     materials: {{"steel": NeoHookean(density: 1000, young: 1e8, poisson: 0.3)}},
                     bodies: [
-                        (name: "egg", material: "steel", spacing: {spacing}, formulation: Rigid(),
+                        (name: "ellipsoid", material: "steel", spacing: {spacing}, formulation: Rigid(),
                          shape: Rotate(shape: Scale(shape: Sphere(center: (0, 0, 0), radius: 1), by: {axes}), angle_degrees: {degrees})),
                         (name: "floor", material: "steel", shape: HalfSpace(point: (0, -{floor}, 0), normal: (0, 1, 0)), spacing: 0.04, formulation: Rigid()),
                     ],
                     conditions: [Fix(on: Select(body: "floor"))],
-                    contacts: [Contact(between: ("egg", "floor"), friction: 0.9, restitution: 0.5)],
+                    contacts: [Contact(between: ("ellipsoid", "floor"), friction: 0.9, restitution: 0.5)],
                     time: (end: {end}))"#
             ));
             sim.run(|_| true).expect("a run");
@@ -74,13 +74,13 @@ fn an_ellipse_comes_to_rest_in_a_groove() {
         r#"(dimension: Two, gravity: (0, -9.81),
             materials: {"steel": NeoHookean(density: 1000, young: 1e8, poisson: 0.3)},
             bodies: [
-                (name: "egg", material: "steel", spacing: 0.02, formulation: Rigid(),
+                (name: "ellipsoid", material: "steel", spacing: 0.02, formulation: Rigid(),
                  shape: Scale(shape: Sphere(center: (0, 0.3), radius: 1), by: (0.2, 0.12), about: (0, 0.3))),
                 (name: "groove", material: "steel", spacing: 0.02, formulation: Rigid(),
                  shape: Polygon(points: [(0, 0), (1, 1), (1, -0.3), (-1, -0.3), (-1, 0.5)])),
             ],
             conditions: [Fix(on: Select(body: "groove"))],
-            contacts: [Contact(between: ("egg", "groove"), friction: 0.3, restitution: 0.2)],
+            contacts: [Contact(between: ("ellipsoid", "groove"), friction: 0.3, restitution: 0.2)],
             time: (end: 0.3))"#,
     );
     sim.run(|_| true).expect("a run");
@@ -107,13 +107,13 @@ fn an_ellipse_bounces_off_a_thin_plate() {
     let mut sim = simulation(
         r#"(dimension: Two, materials: {"steel": NeoHookean(density: 1000, young: 1e8, poisson: 0.3)},
             bodies: [
-                (name: "egg", material: "steel", spacing: 0.02, velocity: (0, -1), formulation: Rigid(),
+                (name: "ellipsoid", material: "steel", spacing: 0.02, velocity: (0, -1), formulation: Rigid(),
                  shape: Scale(shape: Sphere(center: (0, 0.11), radius: 1), by: (0.2, 0.1), about: (0, 0.11))),
                 (name: "plate", material: "steel", spacing: 0.02, formulation: Rigid(),
                  shape: Box(min: (-0.3, -0.08), max: (0.3, 0))),
             ],
             conditions: [Fix(on: Select(body: "plate"))],
-            contacts: [Contact(between: ("egg", "plate"))],
+            contacts: [Contact(between: ("ellipsoid", "plate"))],
             time: (end: 0.03))"#,
     );
     sim.run(|_| true).expect("a run");

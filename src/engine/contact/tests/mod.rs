@@ -4,7 +4,7 @@ mod apart;
 mod at_rest;
 mod crossing_edges;
 mod deformed;
-mod eggs;
+mod ellipsoids;
 mod heat;
 mod images;
 mod impacts;

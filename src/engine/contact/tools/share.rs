@@ -149,7 +149,7 @@ impl NodeWeight<'_> {
                 let lying = |normal: DVec3| 1.0 - share_of_slope(edge.dot(normal).abs());
                 ridge.shared(|normal| lying(normal) * self.beside_faces(pose, normal))
             }
-            (Feature::Corner, Round::Egg(_)) => ridge.shared(|normal| self.beside_faces(pose, normal)),
+            (Feature::Corner, Round::Ellipsoid(_)) => ridge.shared(|normal| self.beside_faces(pose, normal)),
             (Feature::Corner, Round::Rim(rim)) if !rim.is_ball() => {
                 ridge.shared(|normal| self.beside_faces(pose, normal))
             }
