@@ -115,6 +115,25 @@ fn a_body_that_loses_particles_updates_no_other_one() {
     assert!(!moved(1), "`b` has lost nothing");
 }
 
+/// A ball that leaves its domain has lost its neighbours as it should.
+#[test]
+fn a_body_that_leaves_its_domain_is_not_said_to_be_torn() {
+    let text = r#"(dimension: Two, domain: (min: (-0.5, -0.5), max: (0.85, 1.5), outside: Remove),
+            materials: {"rubber": StVenantKirchhoff(density: 1000, young: 1e6, poisson: 0.3)},
+            bodies: [(name: "ball", material: "rubber", shape: Sphere(center: (0.5, 0.5), radius: 0.3), spacing: 0.05,
+                      formulation: UpdatedLagrangian, plugins: [hourglass_control()])],
+            conditions: [InitialVelocity(on: Select(), value: ("8", "0"))], time: (end: 0.2))"#;
+    let sim = after(&Source::new("left.ron", text.to_owned()), 100);
+    assert!(
+        !sim.warnings().iter().any(|text| text.contains("lost their neighbours")),
+        "{:?}",
+        sim.warnings()
+    );
+    let (view, rows) = sim.world().body_view(BodyId(0));
+    let removed = view.read::<Removed>().expect("removed particles");
+    assert!(removed[rows].iter().all(|removed| *removed != Removed::NO), "all have left");
+}
+
 /// A particle that has been removed stays where it was; what is left of its body may move on at any speed.
 #[test]
 fn a_body_that_leaves_removed_particles_behind_is_updated_as_one_at_rest() {

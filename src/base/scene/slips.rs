@@ -38,8 +38,8 @@ const UNITS: [(&str, i32); 33] = [
     ("%", -2),
 ];
 
-/// Everyday names and the names in scenes.
-const SYNONYMS: [(&str, &str); 21] = [
+/// Everyday names and the names in scenes, with their values where a name alone is not enough.
+const SYNONYMS: [(&str, &str); 36] = [
     ("disk", "Sphere"),
     ("disc", "Sphere"),
     ("circle", "Sphere"),
@@ -61,13 +61,40 @@ const SYNONYMS: [(&str, &str); 21] = [
     ("elastic", "StVenantKirchhoff"),
     ("water", "Fluid"),
     ("liquid", "Fluid"),
+    ("youngsmodulus", "young"),
+    ("elasticmodulus", "young"),
+    ("emodulus", "young"),
+    ("poissonsratio", "poisson"),
+    ("nu", "poisson"),
+    ("rho", "density"),
+    ("stress", "Field(\"stress\")"),
+    ("vonmises", "Field(\"von_mises\")"),
+    ("strain", "max_principal_stretch"),
+    ("strain", "Field(\"max_principal_stretch\")"),
+    ("plasticstrain", "Field(\"plastic_strain\")"),
+    ("pressure", "Field(\"pressure\")"),
+    ("temperature", "Field(\"temperature\")"),
+    ("damage", "Field(\"damage\")"),
+    ("density", "Field(\"density\")"),
 ];
 
+/// Formulations, which first scenes have in the place of `Body`.
+const FORMULATIONS: [&str; 6] =
+    ["Fluid", "Wall", "Rigid", "TotalLagrangian", "UpdatedLagrangian", "Eulerian"];
+
+/// Help for the name of a struct where another one is expected.
+pub(super) fn in_place_of(expected: &str, found: &str) -> String {
+    if expected == "Body" && FORMULATIONS.contains(&found) {
+        return format!("`{found}` is the formulation of a body: `Body(formulation: {found}(), ...)`");
+    }
+    format!("the name may also be left out: `(...)` is a `{expected}` here")
+}
+
 /// The known name for an everyday name.
-pub(super) fn synonym<'a, S: AsRef<str>>(name: &str, known: &'a [S]) -> Option<&'a str> {
+pub(super) fn synonym<S: AsRef<str>>(name: &str, known: &[S]) -> Option<&'static str> {
     let plain: String = name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect();
-    let (_, meant) = SYNONYMS.iter().find(|(word, _)| *word == plain)?;
-    known.iter().map(AsRef::as_ref).find(|known| known == meant)
+    let is_known = |meant: &str| known.iter().any(|known| Some(known.as_ref()) == meant.split('(').next());
+    SYNONYMS.iter().find(|(word, meant)| *word == plain && is_known(meant)).map(|(_, meant)| *meant)
 }
 
 /// Help if text, `rest`, follows directly on a complete number at the end of `before`.
@@ -142,5 +169,7 @@ mod tests {
         assert_eq!(synonym("Disk", &shapes), Some("Sphere"));
         assert_eq!(synonym("half_plane", &shapes), Some("HalfSpace"));
         assert_eq!(synonym("Pipe", &shapes), None);
+        assert_eq!(synonym("VonMises", &["Velocity", "Field"]), Some("Field(\"von_mises\")"));
+        assert_eq!(synonym("VonMises", &["Velocity"]), None);
     }
 }

@@ -114,7 +114,7 @@ fn start(
     let held = BodySet::new(sim.held.take());
     for step in std::mem::take(&mut sim.setup) {
         let mut setup =
-            Setup { world: &world, resources: &mut resources, held: &held, warnings: &mut sim.warnings };
+            Setup { world: &world, resources: &mut resources, held: &held, warnings: sim.warnings.get_mut() };
         step(&mut setup).map_err(|error| at_scene(scene, error))?;
     }
     let schedule = Schedule::new(std::mem::take(&mut sim.systems), &sim.sub_cycled)
@@ -135,7 +135,7 @@ fn start(
         output,
         probes,
         source: source.clone(),
-        warnings: sim.warnings,
+        warnings: sim.warnings.into_inner(),
         references: sim.references,
         sound_speeds,
         mirrored,

@@ -35,7 +35,7 @@ pub(super) fn warn(sim: &mut SimBuilder<'_>) {
         sim.bodies().iter().flat_map(|body| of_body(body).into_iter().chain(of_liquid(body, gravity)));
     let warnings: Vec<String> = of_gravity.into_iter().chain(of_bodies).collect();
     for warning in warnings {
-        if !sim.warnings.contains(&warning) {
+        if !sim.warnings.get_mut().contains(&warning) {
             sim.warn(warning);
         }
     }

@@ -5,6 +5,7 @@ use serde::Deserialize;
 
 use super::field::VectorField;
 use super::joined_side;
+use super::jumps;
 use super::prescribed::{self, PrescribedKind};
 use crate::plugin::{Plugin, SetupError, SimBuilder, Support};
 use crate::scene::{Edge, Expression, PerAxis, Select};
@@ -57,6 +58,7 @@ impl Plugin for Displacement {
             }
         }
         joined_side::warn_of_motion(Self::NAME, &field, |x, t| field.at(x, t), &selection, sim);
+        jumps::warn(Self::NAME, &field, &selection, sim);
         prescribed::prescribe(Self::NAME, PrescribedKind::Displacement, field, &selection, sim)
     }
 }

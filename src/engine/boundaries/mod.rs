@@ -17,6 +17,7 @@ mod initial_velocity;
 mod joined_side;
 #[cfg(test)]
 mod joined_side_tests;
+mod jumps;
 mod load;
 mod load_law;
 mod mean_velocity;

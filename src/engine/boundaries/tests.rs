@@ -350,3 +350,16 @@ fn a_load_on_a_side_that_is_not_flat_is_an_error() {
     assert!(load("Polygon(points: [(0, 0), (0.1, 0.05), (0.1, 0.1), (0, 0.1)])", "MaxX").is_none());
     assert!(load("Polygon(points: [(0, 0), (0.1, 0.05), (0.1, 0.1), (0, 0.1)])", "MinY").is_some());
 }
+
+/// A point far from all particles is probably a slip; one on the surface is not.
+#[test]
+fn a_point_that_no_particle_is_near_is_noticed() {
+    for (point, told) in [("(5, 0.25)", true), ("(1, 0.5)", false), ("(0.3, 0.2)", false)] {
+        let sim = simulation(&block(
+            &format!(r#"Force(on: Select(nearest: {point}), value: (1, 0))"#),
+            "time: (end: 1e-4)",
+        ));
+        let is_told = sim.warnings().iter().any(|warning| warning.contains("from that point"));
+        assert_eq!(is_told, told, "{point}: {:?}", sim.warnings());
+    }
+}

@@ -35,7 +35,8 @@ pub struct SimBuilder<'s> {
     /// The body whose plugin is being built; none for a plugin of the scene.
     pub(crate) own_body: Option<BodyId>,
     pub(crate) sub_cycled: Vec<PhaseId>,
-    pub(crate) warnings: Vec<String>,
+    /// Things to tell the user; also of selections, which are made through a shared reference.
+    pub(crate) warnings: RefCell<Vec<String>>,
     pub(crate) references: Vec<String>,
     /// Of particles with a prescribed motion the numbers of those who prescribe it, by axis.
     pub(crate) prescribed: BTreeMap<(PhaseId, u32), [Option<usize>; 3]>,
@@ -64,7 +65,7 @@ impl<'s> SimBuilder<'s> {
             scope: BodySet::default(),
             own_body: None,
             sub_cycled: Vec::new(),
-            warnings: Vec::new(),
+            warnings: RefCell::default(),
             references: Vec::new(),
             prescribed: BTreeMap::new(),
             prescriptions: Vec::new(),
@@ -229,7 +230,12 @@ impl<'s> SimBuilder<'s> {
     /// The rows of a selection, valid until the first step: for uses at the start only, or with
     /// [`World::rows_now`](crate::world::World::rows_now) later. An error at `field` if nothing is selected.
     pub fn select_at_start(&self, select: &Select, field: &str) -> Result<Selection, SetupError> {
-        selection::resolve(select, field, &self.bodies, self.scene.dimension, self.folder)
+        let selection = selection::resolve(select, field, &self.bodies, self.scene.dimension, self.folder)?;
+        let mut warnings = self.warnings.borrow_mut();
+        let remote = selection.remote(select, &self.bodies).filter(|warning| !warnings.contains(warning));
+        warnings.extend(remote);
+        drop(warnings);
+        Ok(selection)
     }
 
     /// The surface of a shape, which a tool has; `field` is the shape's name among the parameters, for
@@ -282,7 +288,7 @@ impl<'s> SimBuilder<'s> {
 
     /// Tells the user something that is worth looking at; repeated at the end of the run.
     pub fn warn(&mut self, text: impl Into<String>) {
-        self.warnings.push(text.into());
+        self.warnings.get_mut().push(text.into());
     }
 
     /// States the source of a method in use.

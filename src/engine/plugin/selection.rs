@@ -5,11 +5,16 @@ use std::path::Path;
 use glam::DVec3;
 
 use super::error::SetupError;
+use super::offers::BodyKind;
 use super::plan::BodyPlan;
-use crate::notation::place;
+use crate::notation::{place, quantity_to};
 use crate::scene::{Dimension, Face, Select, unknown};
 use crate::shapes::Aabb;
 use crate::world::BodyId;
+
+/// Distance from the point of a selection, over the spacing, from which its particle is not there: particles
+/// fill a body, so that a point inside of it, or on its surface, has one within a spacing.
+const REMOTE: f64 = 1.5;
 
 /// The rows that a [`Select`] means, body by body in scene order; rows are rows of the body's phase.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -27,6 +32,25 @@ impl Selection {
     /// Whether nothing is selected.
     pub fn is_empty(&self) -> bool {
         self.parts.is_empty()
+    }
+
+    /// A warning of a particle that is selected as the one nearest to a point, and is nowhere near it. What
+    /// acts on a rigid body acts at the point itself.
+    pub(super) fn remote(&self, select: &Select, bodies: &[BodyPlan]) -> Option<String> {
+        let (point, (id, rows)) = (select.nearest.as_ref()?.0, self.parts.first()?);
+        let body = &bodies[id.0];
+        let site = body.sites[*rows.first()? as usize - body.rows.start].position;
+        let way = site.distance(point);
+        (body.kind != BodyKind::Rigid && way > REMOTE * body.spacing).then(|| {
+            format!(
+                "`nearest: {}` selects the particle of `{}` at {}, {} or {} from that point: is the point where you mean it to be?",
+                place(point),
+                body.name,
+                place(site),
+                quantity_to(way, "m", 3),
+                quantity_to(way / body.spacing, "spacings", 2)
+            )
+        })
     }
 }
 

@@ -7,6 +7,7 @@ use super::context::Context;
 use super::error::{Error, expression_problem};
 use crate::scene::Problem;
 use crate::scene::expression::constant;
+use crate::scene::slips::in_place_of;
 use crate::scene::tree::{Node, NodeKind};
 
 /// The name of the newtype by which an `Item` asks for its text and place instead of its value.
@@ -46,9 +47,7 @@ impl<'a> NodeValue<'a> {
         if let Some(name) = self.name().filter(|&name| name != expected) {
             let problem =
                 Problem::at_span(self.node.head(), format!("expected `{expected}(...)`, found `{name}`"));
-            self.context.report(
-                problem.help(format!("the name may also be left out: `(...)` is a `{expected}` here")),
-            );
+            self.context.report(problem.help(in_place_of(expected, name)));
         }
     }
 

@@ -98,14 +98,14 @@ impl UpdatedRows {
     }
 
     /// Says of every body how many of its particles an update has let go of; the last word counts. What has
-    /// failed, and what has lost neighbours by failure, is expected.
+    /// failed, and what has lost neighbours by failure or as they left the domain, is expected.
     pub fn warn_of_released(&self, step: &mut Step<'_>) -> Result<(), MissingColumn> {
         for (kernel, at_start) in self.kernels.iter().zip(&self.released_at_start) {
             if self.released(step.world, kernel.body) <= *at_start {
                 continue;
             }
             let cracks = CrackPlaces::of_body(step.world, kernel.body)?;
-            let is_expected = |row: usize| cracks.as_ref().is_some_and(|cracks| cracks.has_at(row));
+            let is_expected = |row: usize| cracks.has_at(row);
             let now = self.released_rows(step.world, kernel.body).filter(|&row| !is_expected(row)).count();
             if now <= *at_start {
                 continue;
@@ -114,7 +114,7 @@ impl UpdatedRows {
                 "particles of body `{}` have lost their neighbours and carry no stress:",
                 step.world.body(kernel.body).name
             );
-            let help = match cracks.is_some() {
+            let help = match cracks.can_fail {
                 true => "the body has been torn there before its material failed",
                 false => {
                     "smaller spacings or a larger `support` keep the body together, the plugin `failure` lets it break"
@@ -134,17 +134,20 @@ struct CrackPlaces<'a> {
     places: ArchetypeColumn<'a, ReferencePosition>,
     support: ArchetypeColumn<'a, SupportRadius>,
     lost: Vec<usize>,
+    /// Whether the material can fail.
+    can_fail: bool,
 }
 
 impl<'a> CrackPlaces<'a> {
-    /// None for a body that cannot fail.
-    fn of_body(world: &'a World, body: BodyId) -> Result<Option<Self>, MissingColumn> {
+    /// Of a body that cannot fail, those that have left the domain.
+    fn of_body(world: &'a World, body: BodyId) -> Result<Self, MissingColumn> {
         let (view, rows) = world.body_view(body);
-        let Ok(damage) = view.read::<Damage>() else { return Ok(None) };
-        let removed = view.read::<Removed>()?;
-        let lost = rows.filter(|&row| damage[row].0 >= 1.0 || removed[row] != Removed::NO).collect();
+        let (damage, removed) = (view.read::<Damage>().ok(), view.read::<Removed>()?);
+        let has_failed = |row: usize| damage.as_ref().is_some_and(|damage| damage[row].0 >= 1.0);
+        let lost = rows.filter(|&row| has_failed(row) || removed[row] != Removed::NO).collect();
+        let can_fail = damage.is_some();
         let (places, support) = (view.read::<ReferencePosition>()?, view.read::<SupportRadius>()?);
-        Ok(Some(Self { places, support, lost }))
+        Ok(Self { places, support, lost, can_fail })
     }
 
     /// Whether a particle is one of them, or had one as its neighbour at the start.

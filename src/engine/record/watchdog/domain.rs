@@ -1,5 +1,6 @@
 //! Particles that leave the domain of the scene.
 
+use crate::notation::place;
 use crate::parallel::{BlockSum, for_each_block};
 use crate::plugin::SimBuilder;
 use crate::removal::DomainBox;
@@ -44,7 +45,7 @@ impl DomainCheck {
             if let Some(row) = first.0.checked_sub(1) {
                 let what = format!(
                     "position {} outside the domain, which holds nothing back (a `Wall` does, and `outside: Remove` takes out what leaves)",
-                    rows[row].0
+                    place(rows[row].0)
                 );
                 return Err(step.unstable(&what, BodyId(k), row));
             }
