@@ -13,8 +13,9 @@ use crate::shapes::Aabb;
 use crate::world::BodyId;
 
 /// Distance from the point of a selection, over the spacing, from which its particle is not there: particles
-/// fill a body, so that a point inside of it, or on its surface, has one within a spacing.
-const REMOTE: f64 = 1.5;
+/// fill a body, so that a point inside of it, or on its surface, has one within a spacing, at the tip of a
+/// tooth within two.
+const REMOTE: f64 = 3.0;
 
 /// The rows that a [`Select`] means, body by body in scene order; rows are rows of the body's phase.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
