@@ -3,7 +3,7 @@
 
 use super::term::{Pair, Rates};
 use super::weight_at::WeightAt;
-use crate::parallel::{EIGHT, EightLanes, Lanes8, Number, Vector};
+use crate::parallel::{Arithmetic, EIGHT, EightLanes, Lanes8, Number, Vector};
 
 /// Maximum number of neighbours: their pairs fit the first-level cache.
 pub(crate) const CHUNK: usize = 48;
@@ -90,9 +90,28 @@ impl BlockPairs {
         &mut self.pairs[..self.count]
     }
 
+    /// What all pairs of the block share. It is computed before the loop over them: within, a bound that is
+    /// checked keeps the compiler from doing so.
+    #[inline(always)]
+    pub(super) fn shared<A: EightLanes>(&self, a: A) -> SharedByPairs<A> {
+        SharedByPairs {
+            support: Number::splat(a, self.support),
+            volume_i: Number::new(a, self.volume),
+        }
+    }
+}
+
+/// The support radius, m, and the volumes V_i, m3, of the pairs of a block.
+#[derive(Clone, Copy)]
+pub(super) struct SharedByPairs<A: Arithmetic> {
+    support: Number<A>,
+    volume_i: Number<A>,
+}
+
+impl<A: EightLanes> SharedByPairs<A> {
     /// The pair with a neighbour, as a term reads it.
     #[inline(always)]
-    pub(super) fn pair<A: EightLanes>(&self, a: A, pair: &EightPairs) -> Pair<A> {
+    pub fn with(self, a: A, pair: &EightPairs) -> Pair<A> {
         let length = Number::new(a, pair.length);
         let x_ij = Vector::new(a, pair.x);
         Pair {
@@ -101,8 +120,8 @@ impl BlockPairs {
             weight: Number::new(a, pair.weight),
             kernel: Number::new(a, pair.kernel),
             v_ij: Vector::new(a, pair.v),
-            support: Number::splat(a, self.support),
-            volume_i: Number::new(a, self.volume),
+            support: self.support,
+            volume_i: self.volume_i,
             volume_j: Number::new(a, pair.volume),
             length,
             reference_length: length,

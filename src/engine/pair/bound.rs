@@ -74,9 +74,10 @@ impl<T: PairTerm> BlockLoop for OneBlock<'_, '_, T> {
         let base = self.pairs.rows[0];
         let i = T::ReadI::eight(a, of_i, &self.pairs.rows, base);
         let mut rates = self.sums.rates(a);
+        let shared = self.pairs.shared(a);
         for pair in self.pairs.pairs() {
             let j = T::ReadJ::same(a, of_j, pair.row, base);
-            term.pair(&self.pairs.pair(a, pair), i, j, &mut rates);
+            term.pair(&shared.with(a, pair), i, j, &mut rates);
         }
         self.sums.keep(&rates);
     }
