@@ -24,8 +24,11 @@ pub struct CorrectedStress {
 
 impl CorrectedStress {
     /// The corrected stress A, without bond stiffness and affine traction.
+    #[inline(always)]
     pub fn new(a: &DMat3) -> Self {
-        let columns = [a.x_axis, a.y_axis, a.z_axis].map(|column| Lanes4::new(column, 0.0));
+        // One by one: the map of an array would be called.
+        let columns =
+            [Lanes4::new(a.x_axis, 0.0), Lanes4::new(a.y_axis, 0.0), Lanes4::new(a.z_axis, 0.0)];
         Self { columns, ..Self::default() }
     }
 

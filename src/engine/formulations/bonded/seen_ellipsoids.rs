@@ -82,12 +82,8 @@ impl<A: FourLanes> OwnEllipsoid<A> {
     #[inline(always)]
     pub fn normals(&self, a: A, r: Vector<A>, of: [&SeenEllipsoid; 4]) -> (Vector<A>, Vector<A>) {
         let other = Self {
-            stretch: a
-                .transpose([of[0].stretch, of[1].stretch, of[2].stretch, of[3].stretch])
-                .map(|lanes| Number::new(a, lanes)),
-            shear: a
-                .transpose([of[0].shear, of[1].shear, of[2].shear, of[3].shear])
-                .map(|lanes| Number::new(a, lanes)),
+            stretch: lane_by_lane(a, [of[0].stretch, of[1].stretch, of[2].stretch, of[3].stretch]),
+            shear: lane_by_lane(a, [of[0].shear, of[1].shear, of[2].shear, of[3].shear]),
         };
         let own = self.times(r);
         (own, (own + other.times(r)) * 0.5)
@@ -112,6 +108,13 @@ impl<A: FourLanes> OwnEllipsoid<A> {
 #[inline(always)]
 fn numbers<A: FourLanes>(a: A, Lanes4([x, y, z, w]): Lanes4) -> [Number<A>; 4] {
     [Number::splat(a, x), Number::splat(a, y), Number::splat(a, z), Number::splat(a, w)]
+}
+
+/// Each lane of four others.
+#[inline(always)]
+fn lane_by_lane<A: FourLanes>(a: A, others: [Lanes4; 4]) -> [Number<A>; 4] {
+    let [x, y, z, w] = a.transpose(others);
+    [Number::new(a, x), Number::new(a, y), Number::new(a, z), Number::new(a, w)]
 }
 
 #[inline(always)]

@@ -5,7 +5,7 @@ use glam::{DMat3, DVec3};
 use super::control_rows::Carried;
 use super::near::EulerianNeighbors;
 use super::particle::EulerianParticle;
-use super::within::filled_up;
+use super::within::{filled_up, records};
 use crate::formulations::bonded::{OwnEllipsoid, SeenEllipsoid};
 use crate::parallel::{FourLanes, Lanes4, Matrix, Number, Vector};
 
@@ -126,8 +126,8 @@ impl ControlPairs<'_> {
         let (x, y, z) = (total(a, x, sums.energy), total(a, y, sums.energy_before), total(a, z, none));
         let mut turn = DVec3::ZERO;
         if STRETCHED {
-            let [along_x, along_y, along_z] = sums.turn.map(Number::lanes);
-            turn = a.sums([along_x, along_y, along_z, none.lanes()]).xyz() * 0.25;
+            let [along_x, along_y, along_z] = sums.turn;
+            turn = total(a, Vector { x: along_x, y: along_y, z: along_z }, none).xyz() * 0.25;
         }
         ControlRowSums {
             force: force.xyz(),
@@ -259,7 +259,7 @@ impl ControlPairs<'_> {
         change: Number<A>,
         sums: &mut ControlSums<A>,
     ) {
-        let of = four.map(|row| &self.ellipsoids[row as usize]);
+        let of = records(four, self.ellipsoids);
         let (own_normal, normal) = own.ellipsoid.normals(a, back, of);
         let change = change / normal.dot(back).max(f64::MIN_POSITIVE);
         sums.force = normal.mul_add(change, sums.force);

@@ -79,14 +79,14 @@ impl EulerianRows {
     /// tr(tau) V_0 over the axes, with the stress that the force is computed from, J.
     fn held(&self, row: usize) -> f64 {
         let inverse = self.near.around[row].inverse_moment;
-        let corrected = self.stresses[row].columns.map(|column| column.xyz());
+        let [x, y, z] = &self.stresses[row].columns;
         let volume = self.points[row].place.0[3];
         if volume <= 0.0 || inverse.trace() <= 0.0 {
             return 0.0;
         }
         let moment =
             if self.plane { plane_inverse(&inverse.to_matrix()) } else { inverse.inverse().to_matrix() };
-        let stress = DMat3::from_cols(corrected[0], corrected[1], corrected[2]) * moment;
+        let stress = DMat3::from_cols(x.xyz(), y.xyz(), z.xyz()) * moment;
         if self.plane {
             0.5 * (stress.x_axis.x + stress.y_axis.y) * volume
         } else {

@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::particle::EulerianParticle;
 use super::rows::EulerianRows;
+use super::within::records;
 use crate::kernels::Kernel;
 use crate::pair::{
     Extras, FourVectors, PairBatch, PairReads, PairRows, PairSource, RowSlots, WeightAt, components,
@@ -117,15 +117,15 @@ struct FourNeighbors {
 fn put<A: FourLanes>(a: A, packed: &EulerianRows, four: FourNeighbors, n: usize, slots: &mut RowSlots<'_>) {
     let FourNeighbors { i, neighbors: four, count, first: at } = four;
     let EulerianRows { lists, near, points, carried, .. } = packed;
-    let [j, k, l, m] = four.map(|row| row as usize);
-    let of: [&EulerianParticle; 4] = [&points[j], &points[k], &points[l], &points[m]];
+    let of = records(&four, points);
+    let from = records(&four, carried);
     let (own, original) = (&points[i], carried[i].original);
     let [x, y, z, _] = a.transpose([of[0].place, of[1].place, of[2].place, of[3].place]);
     let now = Vector::new(a, [x, y, z]) - Vector::splat(a, own.place.xyz());
     let [x, y, z, volume] = a.transpose([of[0].velocity, of[1].velocity, of[2].velocity, of[3].velocity]);
     let passing = Vector::new(a, [x, y, z]) - Vector::splat(a, own.velocity.xyz());
     let [x, y, z, _] =
-        a.transpose([carried[j].original, carried[k].original, carried[l].original, carried[m].original]);
+        a.transpose([from[0].original, from[1].original, from[2].original, from[3].original]);
     let then = Vector::new(a, [x, y, z]) - Vector::splat(a, original.xyz());
     let (mut weight, mut volume_j) = (Lanes4::ZERO, Lanes4::ZERO);
     for lane in 0..count {

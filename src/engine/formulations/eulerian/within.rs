@@ -71,8 +71,7 @@ impl<'a, A: FourLanes, const STRETCHED: bool> Center<'a, A, STRETCHED> {
         if !STRETCHED {
             return (square(a, arm), Lanes4::splat(1.0));
         }
-        let of = four.map(|row| &self.ellipsoids[row as usize]);
-        let seen = self.ellipsoid.measure(a, Vector::new(a, *arm), of);
+        let seen = self.ellipsoid.measure(a, Vector::new(a, *arm), records(four, self.ellipsoids));
         (seen.square.lanes(), seen.density.lanes())
     }
 
@@ -100,11 +99,11 @@ fn square<A: FourLanes>(a: A, [x, y, z]: &[Lanes4; 3]) -> Lanes4 {
     if A::AXES == 3 { a.mul_add(*z, *z, square) } else { square }
 }
 
-/// The records of four particles.
+/// The records of four particles. The map of an array would be called.
 #[inline(always)]
-pub(super) fn records<'a>(four: &[u32; 4], points: &'a [EulerianParticle]) -> [&'a EulerianParticle; 4] {
+pub(super) fn records<'a, T>(four: &[u32; 4], all: &'a [T]) -> [&'a T; 4] {
     let [j, k, l, m] = [four[0] as usize, four[1] as usize, four[2] as usize, four[3] as usize];
-    [&points[j], &points[k], &points[l], &points[m]]
+    [&all[j], &all[k], &all[l], &all[m]]
 }
 
 /// Their places and reference volumes.

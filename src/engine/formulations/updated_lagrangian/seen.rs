@@ -73,7 +73,8 @@ pub(super) fn fill_columns(
     gradient: &[DMat3],
     scale: impl Fn(usize) -> f64 + Sync,
 ) {
-    let of = |f: DMat3| [f.x_axis, f.y_axis, f.z_axis].map(|column| Lanes4::new(column, 0.0));
+    let column = |column| Lanes4::new(column, 0.0);
+    let of = |f: DMat3| [column(f.x_axis), column(f.y_axis), column(f.z_axis)];
     columns.resize(gradient.len() + ghosts.len(), [Lanes4::ZERO; 3]);
     for_each_block(&mut columns[..gradient.len()], &mut Vec::new(), &|first, columns: &mut [Columns]| {
         columns.iter_mut().zip(first..).for_each(|(own, row)| *own = of(gradient[row] * scale(row)));
