@@ -68,7 +68,7 @@ impl Ghosts {
     /// x_ij from a real row to any row, from the positions of the real rows. Seen from the other end of the
     /// bond it is the same to the last bit, but for signs: the weight is rounded to single precision and must
     /// not differ.
-    #[inline]
+    #[inline(always)]
     pub fn pair(&self, position: &[DVec3], i: usize, j: usize) -> DVec3 {
         if j < self.rows {
             return position[j] - position[i];
