@@ -82,11 +82,14 @@ impl Fragments {
         };
         while next < found.len() && count(found, mirrored) < *particles {
             solid.neighbors(found[next], &mut |j, _| {
+                if found.len() >= *particles {
+                    return;
+                }
                 let source = solid.ghosts().source(j);
                 if let Some(signs) = solid.ghosts().mirror(j) {
                     mirrored = mirrored.min(signs);
                 }
-                if found.len() < *particles && !found.contains(&source) {
+                if !found.contains(&source) {
                     found.push(source);
                 }
             });
