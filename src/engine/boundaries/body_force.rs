@@ -8,17 +8,19 @@ use super::field::VectorField;
 use super::load;
 use super::load_law::LoadLaw;
 use super::part::Part;
+use super::pulses::some_of;
 use crate::plugin::{Plugin, SetupError, SimBuilder};
 use crate::scene::{Expression, PerAxis, Select};
 use crate::schedule::{Step, StepError};
 use crate::world::Mass;
 
 /// Loads particles with a force per mass, a function of place and time: a shaking table, an electromagnetic
-/// force. The place is the reference position of a solid or rigid body, and the present position of a fluid.
-/// Constant gravity of all bodies is `gravity` of the scene. Walls beside a fluid feel it as they feel
+/// force. Constant gravity of all bodies is `gravity` of the scene. Walls beside a fluid feel it as they feel
 /// gravity.
 ///
-/// Gravity that grows within 0.1 s: `BodyForce(on: Select(), value: (0.0, "-9.81*smoothstep(t/0.1)"))`.
+/// Gravity that grows within 0.1 s: `BodyForce(on: Select(), value: (0.0, "-9.81*smoothstep(t/0.1)"))`. What
+/// a moon of the origin feels: `BodyForce(on: Select(body: "moon"), value: ("-x/(x^2+y^2)^1.5",
+/// "-y/(x^2+y^2)^1.5"))`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BodyForce {
@@ -26,6 +28,20 @@ pub struct BodyForce {
     pub on: Select,
     /// Force per mass along each axis \[N/kg\]; `None` is zero.
     pub value: PerAxis<Expression>,
+    /// The place that x, y and z are.
+    #[serde(default)]
+    pub place: FieldPlace,
+}
+
+/// The place at which a function of place is evaluated.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Eq, JsonSchema, PartialEq)]
+pub enum FieldPlace {
+    /// Where the particle is: a field in space, as that of a magnet or the centrifugal force.
+    #[default]
+    Present,
+    /// Where the particle of a solid or rigid body was at the start: a load that belongs to the material.
+    /// Fluids have no such place, and are loaded where they are.
+    Reference,
 }
 
 impl Plugin for BodyForce {
@@ -37,7 +53,7 @@ impl Plugin for BodyForce {
         load::require_movable(&selection, sim)?;
         load::warn_of_parts(Self::NAME, &self.on, &selection, sim);
         let field = VectorField::new(self.value, sim)?;
-        let law = ForcePerMass { field };
+        let law = ForcePerMass { field, place: self.place };
         load::apply("body_force", law, &selection, sim, |system| system.reads::<Mass>());
         Ok(())
     }
@@ -46,6 +62,7 @@ impl Plugin for BodyForce {
 /// A field of the place and time, times the mass of every particle.
 struct ForcePerMass {
     field: VectorField,
+    place: FieldPlace,
 }
 
 impl LoadLaw for ForcePerMass {
@@ -63,5 +80,23 @@ impl LoadLaw for ForcePerMass {
 
     fn functions(&self) -> Vec<Expression> {
         self.field.functions().cloned().collect()
+    }
+
+    fn is_in_space(&self) -> bool {
+        self.place == FieldPlace::Present
+    }
+
+    /// From differences over a spacing, so that a step of the field does not count as an endless slope.
+    fn swing(&self, part: &Part, step: &Step<'_>) -> f64 {
+        if !(part.in_space && self.field.depends_on_place()) {
+            return 0.0;
+        }
+        let (time, spacing) = (step.clock.end(), step.world.body(part.body).spacing);
+        let slope = |place: DVec3, axis: usize| {
+            let way = 0.5 * spacing * DVec3::AXES[axis];
+            (self.field.at(place + way, time) - self.field.at(place - way, time)).length_squared()
+        };
+        let square = |place: DVec3| (0..3).map(|axis| slope(place, axis)).sum::<f64>().sqrt() / spacing;
+        some_of(&part.points).map(square).filter(|square| square.is_finite()).fold(0.0, f64::max)
     }
 }

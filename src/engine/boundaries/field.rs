@@ -68,9 +68,10 @@ impl VectorField {
         self.components.iter().flatten().any(Expression::depends_on_time)
     }
 
-    /// Whether a load keeps its values on the particles of a part: particles of a fluid come to other places.
+    /// Whether a load keeps its values on the particles of a part: where they are in space, they come to
+    /// other places.
     pub fn is_constant(&self, part: &Part) -> bool {
-        !(self.depends_on_time() || part.flows() && self.depends_on_place())
+        !(self.depends_on_time() || part.in_space && self.depends_on_place())
     }
 
     /// The functions of its axes.

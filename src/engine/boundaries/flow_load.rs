@@ -50,7 +50,7 @@ impl Run for FlowLoad {
         for ((k, part), accelerations) in self.parts.iter_mut().zip(&mut self.accelerations) {
             part.follow(step.world, accelerations)?;
             if accelerations.is_empty() || !self.law.is_constant(part) {
-                part.flow(step.world)?;
+                part.locate(step.world)?;
                 self.law.forces(*k, part, step, accelerations)?;
                 let mass = step.world.phase(step.world.body(part.body).phase).read::<Mass>()?;
                 for (acceleration, &row) in accelerations.iter_mut().zip(&part.rows) {

@@ -19,6 +19,18 @@ pub(super) trait LoadLaw: Send + Sync + 'static {
         Vec::new()
     }
 
+    /// Whether a load on solids and rigid bodies is a function of where they are, and not of where they were
+    /// at the start.
+    fn is_in_space(&self) -> bool {
+        false
+    }
+
+    /// Bound of the squared frequency with which particles swing in the load, 1/s2; zero where it does not
+    /// change along their way.
+    fn swing(&self, _: &Part, _: &Step<'_>) -> f64 {
+        0.0
+    }
+
     /// From the particles of part `k` of a rigid body to where the forces act, in the reference
     /// configuration, m; none where they act on the particles.
     fn arms(&self, _: usize) -> &[DVec3] {

@@ -34,6 +34,8 @@ mod rigid_part;
 mod rotation_rate;
 mod skin_load;
 #[cfg(test)]
+mod space_tests;
+#[cfg(test)]
 mod surface_tests;
 mod symmetry;
 #[cfg(test)]

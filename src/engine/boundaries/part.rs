@@ -1,5 +1,5 @@
 //! The selected particles of a body, with the positions at which functions of place are evaluated: those of
-//! the reference configuration, or the present ones of a fluid.
+//! the reference configuration, or the present ones of a fluid and of a field in space.
 
 use glam::DVec3;
 
@@ -14,8 +14,11 @@ pub(super) struct Part {
     pub body: BodyId,
     /// Rows in the phase of the body, ascending.
     pub rows: Vec<u32>,
-    /// Reference position of each, m; of a fluid the place that [`Part::flow`] took last.
+    /// Reference position of each, m; the place that [`Part::locate`] took last where functions are evaluated
+    /// at the present places.
     pub points: Vec<DVec3>,
+    /// Whether functions are evaluated where the particles are, as always in a fluid, which has no reference.
+    pub in_space: bool,
     /// Rows at the start, ascending, of a fluid, which is sorted at times; empty for others.
     at_start: Vec<u32>,
     /// Which of these each row holds.
@@ -31,18 +34,12 @@ impl Part {
         self.numbers.get(n).map_or(n, |&k| k as usize)
     }
 
-    /// Whether the particles are those of a fluid.
-    pub fn flows(&self) -> bool {
-        !self.at_start.is_empty()
-    }
-
-    /// Takes the places of a fluid, which has no reference, as they are now in the domain: there loads on it
-    /// are evaluated.
+    /// Takes the places as they are now in the domain, if functions are evaluated there.
     ///
     /// # Errors
     /// The phase has no positions.
-    pub fn flow(&mut self, world: &World) -> Result<(), MissingColumn> {
-        if self.flows() {
+    pub fn locate(&mut self, world: &World) -> Result<(), MissingColumn> {
+        if self.in_space {
             let (view, _) = world.body_view(self.body);
             let position = view.read::<Position>()?;
             for (point, &row) in self.points.iter_mut().zip(&self.rows) {
@@ -84,7 +81,8 @@ pub(super) fn parts_of(selection: &Selection, sim: &SimBuilder<'_>) -> Vec<Part>
         let points = rows.iter().map(|&row| body.sites[row as usize - body.rows.start].position).collect();
         let at_start = if body.kind == BodyKind::Fluid { rows.clone() } else { Vec::new() };
         let numbers = (0..at_start.len() as u32).collect();
-        Part { body: *id, rows: rows.clone(), points, at_start, numbers, periodic: sim.periodic() }
+        let in_space = body.kind == BodyKind::Fluid;
+        Part { body: *id, rows: rows.clone(), points, in_space, at_start, numbers, periodic: sim.periodic() }
     };
     selection.parts.iter().map(part).collect()
 }

@@ -94,10 +94,7 @@ impl BlockPairs {
     /// checked keeps the compiler from doing so.
     #[inline(always)]
     pub(super) fn shared<A: EightLanes>(&self, a: A) -> SharedByPairs<A> {
-        SharedByPairs {
-            support: Number::splat(a, self.support),
-            volume_i: Number::new(a, self.volume),
-        }
+        SharedByPairs { support: Number::splat(a, self.support), volume_i: Number::new(a, self.volume) }
     }
 }
 

@@ -27,8 +27,7 @@ impl CorrectedStress {
     #[inline(always)]
     pub fn new(a: &DMat3) -> Self {
         // One by one: the map of an array would be called.
-        let columns =
-            [Lanes4::new(a.x_axis, 0.0), Lanes4::new(a.y_axis, 0.0), Lanes4::new(a.z_axis, 0.0)];
+        let columns = [Lanes4::new(a.x_axis, 0.0), Lanes4::new(a.y_axis, 0.0), Lanes4::new(a.z_axis, 0.0)];
         Self { columns, ..Self::default() }
     }
 

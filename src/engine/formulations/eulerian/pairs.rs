@@ -124,8 +124,7 @@ fn put<A: FourLanes>(a: A, packed: &EulerianRows, four: FourNeighbors, n: usize,
     let now = Vector::new(a, [x, y, z]) - Vector::splat(a, own.place.xyz());
     let [x, y, z, volume] = a.transpose([of[0].velocity, of[1].velocity, of[2].velocity, of[3].velocity]);
     let passing = Vector::new(a, [x, y, z]) - Vector::splat(a, own.velocity.xyz());
-    let [x, y, z, _] =
-        a.transpose([from[0].original, from[1].original, from[2].original, from[3].original]);
+    let [x, y, z, _] = a.transpose([from[0].original, from[1].original, from[2].original, from[3].original]);
     let then = Vector::new(a, [x, y, z]) - Vector::splat(a, original.xyz());
     let (mut weight, mut volume_j) = (Lanes4::ZERO, Lanes4::ZERO);
     for lane in 0..count {
