@@ -179,6 +179,11 @@ impl RigidBody {
         self.constraint.is_complete()
     }
 
+    /// Whether it turns, freely or driven.
+    pub fn may_turn(&self) -> bool {
+        !self.constraint.is_held_from_turning()
+    }
+
     /// Bound of the squared frequency, 1/s2, with which it swings in loads of those moments, N m, and of the
     /// angular acceleration that they cause.
     pub(super) fn swing(&self, moments: [DVec3; 3]) -> f64 {

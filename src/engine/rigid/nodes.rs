@@ -173,6 +173,11 @@ impl Nodes {
         }
     }
 
+    /// Whether there is an axis about which the outline turns in itself.
+    pub fn turns_in_itself(&self) -> bool {
+        matches!(self.outline, Some(Outline::Ball { .. } | Outline::Side { .. }))
+    }
+
     /// Whether the round outline has circles in every plane: nothing can be between them.
     pub fn is_ball(&self) -> bool {
         matches!(self.outline, Some(Outline::Ball { .. }))

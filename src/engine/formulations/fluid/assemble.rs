@@ -15,7 +15,7 @@ use crate::formulations::fluid::lists::{
     FlowPairs, GapPairs, GapSide, NearRows, SideMotion, Skins, Thickness, ThinBody,
 };
 use crate::formulations::fluid::passes::blocks;
-use crate::formulations::fluid::setup::{advice, checks, rest, start, torn_walls};
+use crate::formulations::fluid::setup::{advice, checks, rest, start, stepped, torn_walls};
 use crate::formulations::fluid::walls::{Repulsion, Slip, WallBody, WallShapes, has_suction};
 use crate::neighbors::Periodic;
 use crate::parallel::Lanes4;
@@ -90,6 +90,7 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         }
         checks::flow_is_slow(&mut cloud, setup.world)?;
         advice::sinking(&cloud, &walls, &touching, gravity, setup);
+        stepped::warn(&cloud, setup);
         setup.resources.insert(cloud);
         setup.resources.complete_packed_by(FlowCloud::complete);
         Ok(())

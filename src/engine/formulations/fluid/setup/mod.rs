@@ -16,5 +16,7 @@ pub mod advice;
 
 pub mod torn_walls;
 
+pub mod stepped;
+
 pub use sound_speed::estimate as estimate_sound_speeds;
 pub use start::start;
