@@ -31,10 +31,11 @@ pub struct Intrusion {
 }
 
 /// The shape of a body that bounds the flow.
-struct IntrudedShape {
+pub struct IntrudedShape {
     id: BodyId,
-    region: Box<dyn Region>,
-    spacing: f64,
+    pub region: Box<dyn Region>,
+    /// Of its particles, m.
+    pub spacing: f64,
     /// Whether it has lost particles.
     is_worn: bool,
 }
@@ -49,6 +50,11 @@ impl Intrusion {
         };
         let bodies = sim.bodies().iter().filter_map(body).collect();
         Self { bodies, min_depth: DEPTH * spacing, told: Vec::new() }
+    }
+
+    /// The shape of a body, if it is known and still the same.
+    pub fn shape(&self, id: BodyId) -> Option<&IntrudedShape> {
+        self.bodies.iter().find(|body| body.id == id && !body.is_worn)
     }
 
     /// Checks all particles, and warns of new ones.

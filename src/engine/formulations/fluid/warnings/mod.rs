@@ -18,6 +18,8 @@ mod spreading;
 
 mod stabilized;
 
+mod stairs;
+
 mod stretched;
 
 mod surroundings;

@@ -16,6 +16,7 @@ use super::no_gap_pressure;
 use super::passing::PassingWalls;
 use super::spreading::Spreading;
 use super::stabilized;
+use super::stairs::StairsWatch;
 use super::stretched;
 use super::tension::TensionWatch;
 use super::torques;
@@ -58,6 +59,7 @@ struct FlowWatch {
     unevenness: Unevenness,
     tension: TensionWatch,
     spreading: Spreading,
+    stairs: StairsWatch,
     /// Compression, filling and unevenness are looked at with the frames.
     frames: Trigger,
     end: f64,
@@ -91,6 +93,7 @@ pub fn add(phases: Vec<PhaseId>, groups: &[Group], diffusion: Option<String>, si
         unevenness: Unevenness::new(sim.work_of_weight()),
         tension: TensionWatch::new(groups, sim),
         spreading: Spreading::new(sim),
+        stairs: StairsWatch::default(),
         frames: Trigger::after_interval(sim.scene().record_interval()),
         end: sim.scene().time.end,
         is_started: false,
@@ -140,6 +143,7 @@ impl Run for FlowWatch {
             self.closed.look(at_end, &cloud, &mut self.scratch, step);
             self.unevenness.look(&cloud, &mut self.friction, step);
             self.tension.look(&cloud, &mut self.scratch, step);
+            self.stairs.look(at_end, &cloud, &self.intrusion, step)?;
         }
         if at_end {
             stabilized::look(&mut self.is_stabilized, &cloud, &mut self.scratch, step);
@@ -156,7 +160,7 @@ impl Run for FlowWatch {
         postcard::to_stdvec(&(
             told,
             bodies,
-            (&self.compression, &self.tension, &self.spreading.seen),
+            (&self.compression, &self.tension, &self.spreading.seen, &self.stairs),
             (&self.filling, &self.lost_volume, &self.stretched, self.fallen.told),
             self.frames,
         ))
@@ -164,8 +168,13 @@ impl Run for FlowWatch {
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        let Ok((told, bodies, (compression, tension, spreading), (filling, lost, stretched, fallen), frames)) =
-            postcard::from_bytes(state)
+        let Ok((
+            told,
+            bodies,
+            (compression, tension, spreading, stairs),
+            (filling, lost, stretched, fallen),
+            frames,
+        )) = postcard::from_bytes(state)
         else {
             return false;
         };
@@ -175,7 +184,7 @@ impl Run for FlowWatch {
         (self.is_stabilized, self.is_driven, self.has_torques) = at_end;
         (self.intrusion.told, self.passing.told, self.unevenness.told) = told;
         (self.compression, self.filling, self.tension) = (compression, filling, tension);
-        self.spreading.seen = spreading;
+        (self.spreading.seen, self.stairs) = (spreading, stairs);
         self.frames.resume(frames);
         true
     }
