@@ -23,7 +23,8 @@ pub struct TotalForce {
     pub on: Select,
     /// Total force per axis \[N; N per metre of thickness in two dimensions\], a function of time; where it
     /// depends on place, every particle takes its share of the value at its reference position, in a fluid at
-    /// its present one. `None` is zero.
+    /// its present one. A force that depends on where a solid or rigid body is now is a `BodyForce`, such as
+    /// a spring, `"-k*x/m"`. `None` is zero.
     pub value: PerAxis<Expression>,
 }
 
