@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::field::VectorField;
 use super::load;
@@ -34,7 +34,7 @@ pub struct BodyForce {
 }
 
 /// The place at which a function of place is evaluated.
-#[derive(Clone, Copy, Debug, Default, Deserialize, Eq, JsonSchema, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, Eq, JsonSchema, PartialEq, Serialize)]
 pub enum FieldPlace {
     /// Where the particle is: a field in space, as that of a magnet or the centrifugal force.
     #[default]
