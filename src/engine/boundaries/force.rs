@@ -6,7 +6,7 @@ use serde::Deserialize;
 use super::field::VectorField;
 use super::load::{self, DeadLoad};
 use super::on_rigid::arms_of;
-use crate::plugin::{Plugin, SetupError, SimBuilder};
+use crate::plugin::{BodyKind, Plugin, Selection, SetupError, SimBuilder};
 use crate::scene::{Expression, PerAxis, Select};
 
 /// Loads particles with a force of a given total, in equal shares; with a selection of one particle
@@ -37,6 +37,7 @@ impl Plugin for TotalForce {
         load::require_movable(&selection, sim)?;
         load::warn_of_parts(Self::NAME, &self.on, &selection, sim);
         let field = VectorField::new(self.value, sim)?;
+        warn_of_places(&field, &selection, sim);
         let share = 1.0 / selection.len() as f64;
         let shares = selection.parts.iter().map(|(_, rows)| vec![share; rows.len()]).collect();
         let arms = arms_of(&self.on, &selection, sim)?;
@@ -44,4 +45,22 @@ impl Plugin for TotalForce {
         load::apply("force", law, &selection, sim, |system| system);
         Ok(())
     }
+}
+
+/// Warns of a force on a rigid body that depends on place: it is probably meant to follow the body.
+fn warn_of_places(field: &VectorField, selection: &Selection, sim: &mut SimBuilder<'_>) {
+    if !field.depends_on_place() {
+        return;
+    }
+    let bodies = selection.parts.iter().map(|(id, _)| sim.body(*id));
+    let rigid = bodies.filter(|body| body.kind == BodyKind::Rigid);
+    let warnings: Vec<String> = rigid
+        .map(|body| {
+            format!(
+                "`Force` on the rigid body `{}` depends on where its particles were at the start, however far it moves: a force that depends on where it is, as that of a spring, is a `BodyForce`, a force per mass",
+                body.name
+            )
+        })
+        .collect();
+    warnings.into_iter().for_each(|warning| sim.warn(warning));
 }

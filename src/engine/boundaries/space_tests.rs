@@ -61,3 +61,23 @@ fn a_load_in_the_reference_goes_with_the_body() {
     assert!(place.distance(DVec3::new(1.0 - 0.5 * time * time, 0.8 * time, 0.0)) < 1e-3, "{place}");
     assert!(velocity.distance(DVec3::new(-time, 0.8, 0.0)) < 1e-3, "{velocity}");
 }
+
+/// A total force depends on the places at the start, which is told of a rigid body.
+#[test]
+fn a_force_on_a_rigid_body_that_depends_on_place_is_noticed() {
+    let told = |formulation: &str, value: &str| {
+        let text = format!(
+            r#"(dimension: Two, materials: {{"rock": NeoHookean(density: 1000, young: 2e4, poisson: 0.3)}},
+                bodies: [(name: "moon", material: "rock", shape: Sphere(center: (1, 0), radius: 0.02), spacing: 0.01,
+                          formulation: {formulation})],
+                conditions: [Force(on: Select(), value: ("{value}", 0))], time: (end: 1))"#
+        );
+        let built = parse(Source::new("moon.ron", text))
+            .and_then(|(scene, source)| build(&scene, &source, &Registry::standard()));
+        let sim = built.unwrap_or_else(|error| panic!("{error}"));
+        sim.warnings().iter().any(|text| text.contains("at the start, however far"))
+    };
+    assert!(told("Rigid", "-2*x"));
+    assert!(!told("Rigid", "2*sin(t)"));
+    assert!(!told("TotalLagrangian", "-2*x"));
+}
