@@ -67,7 +67,7 @@ struct ForcePerMass {
 
 impl LoadLaw for ForcePerMass {
     fn forces(&self, _: usize, part: &Part, step: &Step<'_>, out: &mut Vec<DVec3>) -> Result<(), StepError> {
-        self.field.values(&part.points, step.clock.end(), BodyForce::NAME, out)?;
+        self.field.values(part.places(), step.clock.end(), BodyForce::NAME, out)?;
         let (view, _) = step.world.body_view(part.body);
         let mass = view.read::<Mass>()?;
         out.iter_mut().zip(&part.rows).for_each(|(force, &row)| *force *= mass[row as usize].0);
@@ -97,6 +97,6 @@ impl LoadLaw for ForcePerMass {
             (self.field.at(place + way, time) - self.field.at(place - way, time)).length_squared()
         };
         let square = |place: DVec3| (0..3).map(|axis| slope(place, axis)).sum::<f64>().sqrt() / spacing;
-        some_of(&part.points).map(square).filter(|square| square.is_finite()).fold(0.0, f64::max)
+        some_of(part.places()).map(square).filter(|square| square.is_finite()).fold(0.0, f64::max)
     }
 }

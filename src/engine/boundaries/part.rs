@@ -14,9 +14,11 @@ pub(super) struct Part {
     pub body: BodyId,
     /// Rows in the phase of the body, ascending.
     pub rows: Vec<u32>,
-    /// Reference position of each, m; the place that [`Part::locate`] took last where functions are evaluated
-    /// at the present places.
+    /// Reference position of each, m; of a fluid the place that [`Part::locate`] took last.
     pub points: Vec<DVec3>,
+    /// Place of each particle of a solid or rigid body in space, m, which [`Part::locate`] took last; empty
+    /// where functions are evaluated in the reference.
+    here: Vec<DVec3>,
     /// Whether functions are evaluated where the particles are, as always in a fluid, which has no reference.
     pub in_space: bool,
     /// Rows at the start, ascending, of a fluid, which is sorted at times; empty for others.
@@ -42,11 +44,19 @@ impl Part {
         if self.in_space {
             let (view, _) = world.body_view(self.body);
             let position = view.read::<Position>()?;
-            for (point, &row) in self.points.iter_mut().zip(&self.rows) {
-                *point = self.periodic.wrap(position[row as usize].0);
+            let flows = !self.at_start.is_empty();
+            self.here.resize(if flows { 0 } else { self.rows.len() }, DVec3::ZERO);
+            let places = if flows { &mut self.points } else { &mut self.here };
+            for (place, &row) in places.iter_mut().zip(&self.rows) {
+                *place = self.periodic.wrap(position[row as usize].0);
             }
         }
         Ok(())
+    }
+
+    /// The places at which functions are evaluated, m.
+    pub fn places(&self) -> &[DVec3] {
+        if self.here.is_empty() { &self.points } else { &self.here }
     }
 
     /// Finds the rows again after the body has been sorted, and puts `along`, one value a row or none, into
@@ -82,7 +92,16 @@ pub(super) fn parts_of(selection: &Selection, sim: &SimBuilder<'_>) -> Vec<Part>
         let at_start = if body.kind == BodyKind::Fluid { rows.clone() } else { Vec::new() };
         let numbers = (0..at_start.len() as u32).collect();
         let in_space = body.kind == BodyKind::Fluid;
-        Part { body: *id, rows: rows.clone(), points, in_space, at_start, numbers, periodic: sim.periodic() }
+        Part {
+            body: *id,
+            rows: rows.clone(),
+            points,
+            here: Vec::new(),
+            in_space,
+            at_start,
+            numbers,
+            periodic: sim.periodic(),
+        }
     };
     selection.parts.iter().map(part).collect()
 }
