@@ -57,9 +57,7 @@ fn jump(at: impl Fn(f64) -> DVec3, end: f64, told: f64) -> Option<(f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::assembly::build;
-    use crate::plugin::Registry;
-    use crate::scene::{Source, parse};
+    use crate::boundaries::tests::simulation;
 
     /// Jumps are found, and ramps and swings of a hundredth of a part of the run are none.
     #[test]
@@ -83,10 +81,7 @@ mod tests {
                     bodies: [(name: "bar", material: "rubber", shape: Box(min: (0, 0), max: (0.2, 0.1)), spacing: 0.02, formulation: TotalLagrangian)],
                     conditions: [Displacement(on: Select(face: MaxX), value: ("{value}", 0))], time: (end: 0.5))"#
             );
-            let built = parse(Source::new("test.ron", text))
-                .and_then(|(scene, source)| build(&scene, &source, &Registry::standard()));
-            let sim = built.unwrap_or_else(|error| panic!("{error}"));
-            sim.warnings().iter().filter(|warning| warning.contains("at once")).count()
+            simulation(&text).warnings().iter().filter(|warning| warning.contains("at once")).count()
         };
         assert_eq!(count("0.01*step(t - 0.123)"), 1);
         assert_eq!(count("0.01*smoothstep((t - 0.1)/0.01)"), 0);

@@ -55,10 +55,6 @@ impl LoadLaw for DeadLoad {
     }
 }
 
-/// Step of a body in a field of force, over the time in which it swings by one radian: the period of the
-/// leapfrog is then right to 0.04 %.
-const SWING: f64 = 0.1;
-
 /// Adds the system that applies a load; its work goes to the account of the same name.
 pub(super) fn apply(
     label: &'static str,
@@ -156,10 +152,10 @@ impl Run for Load {
             if changes {
                 part.locate(step.world)?;
                 self.law.forces(k, part, step, &mut self.next)?;
-                let swing = self.law.swing(part, step);
-                if swing > 0.0 {
+                let rate = self.law.rate(part, step)?;
+                if rate > 0.0 {
                     let name = &step.world.body(part.body).name;
-                    step.limits.propose(SWING / swing.sqrt(), format_args!("force field on `{name}`"));
+                    step.limits.propose(1.0 / rate, format_args!("force field on `{name}`"));
                 }
                 if first {
                     last.clone_from(&self.next);

@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::part::Part;
 use crate::scene::Expression;
 use crate::schedule::{Step, StepError};
+use crate::world::MissingColumn;
 
 /// The force of a load on every particle of a part.
 pub(super) trait LoadLaw: Send + Sync + 'static {
@@ -25,10 +26,13 @@ pub(super) trait LoadLaw: Send + Sync + 'static {
         false
     }
 
-    /// Bound of the squared frequency with which particles swing in the load, 1/s2; zero where it does not
-    /// change along their way.
-    fn swing(&self, _: &Part, _: &Step<'_>) -> f64 {
-        0.0
+    /// One over the longest step in which the load changes little along the way of the particles, 1/s; zero
+    /// where it does not depend on where they are.
+    ///
+    /// # Errors
+    /// The phase has no velocities.
+    fn rate(&self, _: &Part, _: &Step<'_>) -> Result<f64, MissingColumn> {
+        Ok(0.0)
     }
 
     /// From the particles of part `k` of a rigid body to where the forces act, in the reference
