@@ -3,14 +3,19 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::shape::Shape;
+
 /// How particles are laid out inside a shape. With every layout a particle takes spacing^2 (two dimensions)
 /// or spacing^3 (three) of the shape on average, and the volumes add up to that of the shape.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum Lattice {
+    /// `Regular`; in a scene with a fluid `BodyFitted()` for bodies with oblique or curved faces, whose steps
+    /// in a regular lattice would brake the fluid.
+    #[default]
+    Automatic,
     /// Cell centres of a square (two dimensions) or cubic (three) lattice that tiles the bounding box of the
     /// shape. `Square` and `Cubic` are other names for it.
-    #[default]
     #[serde(alias = "Square", alias = "Cubic")]
     Regular,
     /// Densest packing: rows of triangles along x in two dimensions, hexagonal close packing (hcp, layers
@@ -38,6 +43,19 @@ pub enum Lattice {
         #[serde(default = "default_iterations")]
         iterations: u32,
     },
+}
+
+impl Lattice {
+    /// This lattice, where `Automatic` has chosen one: for a shape in a scene with or without a fluid.
+    pub fn chosen(self, shape: &Shape, beside_fluid: bool) -> Self {
+        match self {
+            Self::Automatic if beside_fluid && !shape.is_rectilinear() => {
+                Self::BodyFitted { iterations: default_fitting() }
+            }
+            Self::Automatic => Self::Regular,
+            _ => self,
+        }
+    }
 }
 
 const fn default_fitting() -> u32 {

@@ -25,6 +25,7 @@ mod openings;
 mod points;
 mod polygon;
 mod quadrature;
+mod rectilinear;
 mod region;
 mod relaxed;
 mod ring;
@@ -37,6 +38,7 @@ mod stretched_sphere;
 mod surface;
 mod tiling;
 mod transform;
+mod two_nearest;
 mod voronoi;
 
 pub use by_distance::ByDistance;

@@ -48,10 +48,18 @@ impl Tiling {
     }
 
     /// The point of cell `index` at the given fractions of its sides (0.5: the centre) \[m\].
+    #[inline]
     pub fn point(&self, index: [usize; 3], part: DVec3) -> DVec3 {
-        let along =
-            |k: usize| self.origin[k] + ((self.first[k] + index[k] as i64) as f64 + part[k]) * self.cell[k];
-        DVec3::new(along(0), along(1), along(2))
+        let along = |first: i64, index: usize| (first + index as i64) as f64;
+        let [x, y, z] = index;
+        let cells = DVec3::new(along(self.first[0], x), along(self.first[1], y), along(self.first[2], z));
+        self.origin + (cells + part) * self.cell
+    }
+
+    /// Number of the cell, counted along x, then y, then z.
+    pub fn number(&self, [x, y, z]: [usize; 3]) -> u128 {
+        let [row, column, _] = self.counts;
+        (z as u128 * column as u128 + y as u128) * row as u128 + x as u128
     }
 
     /// Number of layers, rows or columns of cells between this cell and the origin of the frame.

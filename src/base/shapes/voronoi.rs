@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::region::Region;
 use super::tiling::{CellBox, Tiling};
+use super::two_nearest::{Sample, Samples};
 
 /// Volume and first moment of a Voronoi cell.
 #[derive(Clone, Copy, Default)]
@@ -18,16 +19,13 @@ pub(super) struct CellMoments {
 /// Points sorted by their cell of a tiling. Only occupied cells take memory.
 struct TileBuckets<'a> {
     tiling: &'a Tiling,
-    /// Cell indices z, y, x and index of the point, in ascending order.
-    sorted: Vec<([usize; 3], u32)>,
+    /// Cell, counted along x, then y, then z, and index of the point, in ascending order.
+    sorted: Vec<(u128, u32)>,
 }
 
 impl<'a> TileBuckets<'a> {
     fn new(tiling: &'a Tiling, points: &[DVec3]) -> Self {
-        let entry = |(n, &point): (usize, &DVec3)| {
-            let [x, y, z] = tiling.index(point);
-            ([z, y, x], n as u32)
-        };
+        let entry = |(n, &point): (usize, &DVec3)| (tiling.number(tiling.index(point)), n as u32);
         let mut sorted: Vec<_> = points.par_iter().enumerate().map(entry).collect();
         sorted.par_sort_unstable();
         Self { tiling, sorted }
@@ -38,9 +36,9 @@ impl<'a> TileBuckets<'a> {
         let low = cell.map(|n| n.saturating_sub(reach));
         let high = [0, 1, 2].map(|k| (cell[k] + reach + 1).min(self.tiling.counts[k]));
         (low[2]..high[2]).flat_map(move |z| (low[1]..high[1]).map(move |y| (z, y))).flat_map(move |(z, y)| {
-            let start = self.sorted.partition_point(|&(at, _)| at < [z, y, low[0]]);
-            let row = self.sorted[start..].iter().take_while(move |&&(at, _)| at < [z, y, high[0]]);
-            row.map(|&(_, n)| n)
+            let [from, to] = [low[0], high[0]].map(|x| self.tiling.number([x, y, z]));
+            let start = self.sorted.partition_point(|&(at, _)| at < from);
+            self.sorted[start..].iter().take_while(move |&&(at, _)| at < to).map(|&(_, n)| n)
         })
     }
 }
@@ -58,8 +56,8 @@ pub(super) fn moments(
     let leaf = if tiling.axes == 2 { 8 } else { 4 };
     let blocks = tiling.blocks(region, leaf, leaf);
     let of_block = |block: &CellBox| {
-        let mut found = Vec::new();
-        block.cells().for_each(|cell| sampling.add_cell(cell, block.inside, &mut found));
+        let (mut found, mut buffers) = (Vec::new(), Buffers::default());
+        block.cells().for_each(|cell| sampling.add_cell((cell, block.inside), &mut buffers, &mut found));
         found
     };
     let found: Vec<Vec<(u32, CellMoments)>> = blocks.par_iter().map(of_block).collect();
@@ -81,64 +79,54 @@ struct Sampling<'a> {
     samples: usize,
 }
 
-/// The two points that are nearest to a sample: squared distance, and index among the near points.
-#[derive(Clone, Copy)]
-struct Nearest {
-    first: (f64, usize),
-    second: (f64, usize),
+/// The fraction of a sample of the given width that belongs to the nearest point. A sample that the bisecting
+/// plane of the two points cuts is divided as if the plane were parallel to one of its faces, so that the
+/// error decreases with the square of the sample size.
+#[inline]
+fn share(sample: &Sample, near: &[(DVec3, u32)], width: f64) -> f64 {
+    if !sample.second.0.is_finite() {
+        return 1.0;
+    }
+    let apart = near[sample.first.1].0.distance(near[sample.second.1].0);
+    let to_plane = (sample.second.0 - sample.first.0) / (2.0 * apart);
+    (0.5 + to_plane / width).min(1.0)
 }
 
-impl Nearest {
-    fn of(near: &[(DVec3, u32)], point: DVec3) -> Self {
-        let mut found = Self { first: (f64::INFINITY, 0), second: (f64::INFINITY, 0) };
-        for (n, &(other, _)) in near.iter().enumerate() {
-            let distance = other.distance_squared(point);
-            if distance < found.first.0 {
-                found = Self { first: (distance, n), second: found.first };
-            } else if distance < found.second.0 {
-                found.second = (distance, n);
-            }
-        }
-        found
-    }
-
-    /// The fraction of a sample of the given width that belongs to the nearest point. A sample that the
-    /// bisecting plane of the two points cuts is divided as if the plane were parallel to one of its faces,
-    /// so that the error decreases with the square of the sample size.
-    fn share(&self, near: &[(DVec3, u32)], width: f64) -> f64 {
-        if !self.second.0.is_finite() {
-            return 1.0;
-        }
-        let apart = near[self.first.1].0.distance(near[self.second.1].0);
-        let to_plane = (self.second.0 - self.first.0) / (2.0 * apart);
-        (0.5 + to_plane / width).min(1.0)
-    }
+/// Buffers of the sampling, kept from cell to cell.
+#[derive(Default)]
+struct Buffers {
+    samples: Samples,
+    near: Vec<(DVec3, u32)>,
+    sums: Vec<CellMoments>,
 }
 
 impl Sampling<'_> {
     /// Adds the contributions of a cell of the tiling to the moments of its points.
-    fn add_cell(&self, cell: [usize; 3], inside: bool, found: &mut Vec<(u32, CellMoments)>) {
-        let Self { region, buckets, points, samples } = *self;
+    fn add_cell(
+        &self,
+        (cell, inside): ([usize; 3], bool),
+        buffers: &mut Buffers,
+        found: &mut Vec<(u32, CellMoments)>,
+    ) {
+        let Self { buckets, points, .. } = *self;
+        let Buffers { samples, near, sums } = buffers;
+        self.place(samples, cell, inside);
+        if samples.is_empty() {
+            return;
+        }
         let tiling = buckets.tiling;
-        let step = 1.0 / samples as f64;
+        let step = 1.0 / self.samples as f64;
         let width = tiling.cell.max_element() * step;
         let volume = tiling.cell_volume() * step.powi(tiling.axes as i32);
         let safe = (0..tiling.axes).map(|k| tiling.cell[k]).fold(f64::INFINITY, f64::min);
-        let near: Vec<(DVec3, u32)> = buckets.around(cell, 1).map(|n| (points[n as usize], n)).collect();
-        let mut sums = vec![CellMoments::default(); near.len()];
-        let layers = if tiling.axes == 3 { samples } else { 1 };
-        let places =
-            (0..layers).flat_map(|z| (0..samples).flat_map(move |y| (0..samples).map(move |x| [x, y, z])));
-        for place in places {
-            let point = tiling.point(cell, step * (DVec3::from_array(place.map(|n| n as f64)) + 0.5));
-            let part = if inside { 1.0 } else { (0.5 - region.distance(point) / width).clamp(0.0, 1.0) };
-            if part == 0.0 {
-                continue;
-            }
-            let nearest = Nearest::of(&near, point);
-            let weight = part * volume;
+        near.clear();
+        near.extend(buckets.around(cell, 1).map(|n| (points[n as usize], n)));
+        sums.clear();
+        sums.resize(near.len(), CellMoments::default());
+        for sample in samples.among(near) {
+            let (point, weight) = (sample.point, sample.part * volume);
             // All points within the side of a cell are in the adjacent cells.
-            if nearest.first.0 > safe * safe {
+            if sample.first.0 > safe * safe {
                 let far = nearest_far(buckets, points, cell, point, safe);
                 found.push((far, CellMoments { volume: weight, first: weight * point }));
                 continue;
@@ -147,14 +135,44 @@ impl Sampling<'_> {
                 sums[n].volume += weight;
                 sums[n].first += weight * point;
             };
-            let share = nearest.share(&near, width);
-            add(nearest.first.1, share * weight);
+            let share = share(&sample, near, width);
+            add(sample.first.1, share * weight);
             if share < 1.0 {
-                add(nearest.second.1, (1.0 - share) * weight);
+                add(sample.second.1, (1.0 - share) * weight);
             }
         }
-        found
-            .extend(near.iter().zip(sums).filter(|(_, sum)| sum.volume > 0.0).map(|(&(_, n), sum)| (n, sum)));
+        let reached = near.iter().zip(&*sums).filter(|(_, sum)| sum.volume > 0.0);
+        found.extend(reached.map(|(&(_, n), &sum)| (n, sum)));
+    }
+
+    /// The samples of a cell that are in the region, at least in part.
+    fn place(&self, samples: &mut Samples, cell: [usize; 3], mut inside: bool) {
+        samples.clear();
+        let tiling = self.buckets.tiling;
+        let step = 1.0 / self.samples as f64;
+        let width = tiling.cell.max_element() * step;
+        if !inside {
+            // The distance changes by no more than the way.
+            let middle = self.region.distance(tiling.point(cell, DVec3::splat(0.5)));
+            let reach = 0.5 * (tiling.cell.length() + width);
+            if middle > reach {
+                return;
+            }
+            inside = middle < -reach;
+        }
+        for z in 0..if tiling.axes == 3 { self.samples } else { 1 } {
+            for y in 0..self.samples {
+                for x in 0..self.samples {
+                    let place = DVec3::new(x as f64, y as f64, z as f64);
+                    let point = tiling.point(cell, step * (place + 0.5));
+                    let clipped = || (0.5 - self.region.distance(point) / width).clamp(0.0, 1.0);
+                    let part = if inside { 1.0 } else { clipped() };
+                    if part > 0.0 {
+                        samples.push(point, part);
+                    }
+                }
+            }
+        }
     }
 }
 

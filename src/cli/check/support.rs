@@ -29,7 +29,7 @@ pub fn notes(scene: &Scene, sim: &Simulation) -> Vec<String> {
     }
     let rearranges = |(group, state): &&(&Group, &FluidState)| {
         let rests = mean_speed(&cloud, group) < AT_REST * gravity.length() * sim.clock().time;
-        let is_cubic = scene.bodies[group.body.0].lattice == Lattice::Regular;
+        let is_cubic = matches!(scene.bodies[group.body.0].lattice, Lattice::Automatic | Lattice::Regular);
         is_cubic && rests && state.viscosity < VISCOUS * state.density * state.sound_speed * h
     };
     let still = fluids.iter().filter(|_| share < OF_STILL_WATER).filter(rearranges);

@@ -42,15 +42,18 @@ pub(super) fn place_bodies<'r>(
         }
     }
     let mut memory_left = memory::free();
+    let beside_fluid = scene.bodies.iter().any(|body| is_fluid(body, registry));
     let mut placed = Placed::default();
     for (k, body) in scene.bodies.iter().enumerate() {
         let place = || {
             let formulation = parse_formulation(registry, &body.formulation)?;
             let (sites, bounds) =
-                fill(body, formulation.0, scene, source.folder(), memory_left).map_err(|error| {
-                    let path = format!("bodies[{k}].{}", error.path);
-                    vec![Problem::at_path(path, error.message()).helps(error.kind.help())]
-                })?;
+                fill(body, formulation.0, (scene, source.folder()), beside_fluid, memory_left).map_err(
+                    |error| {
+                        let path = format!("bodies[{k}].{}", error.path);
+                        vec![Problem::at_path(path, error.message()).helps(error.kind.help())]
+                    },
+                )?;
             Ok((formulation, sites, bounds))
         };
         let parts = place().map_err(|found: Vec<Problem>| problems.extend(found));
@@ -119,15 +122,15 @@ impl<'r> Placed<'r> {
 fn fill(
     body: &BodyDescription,
     formulation: &FormulationEntry,
-    scene: &Scene,
-    folder: &Path,
+    (scene, folder): (&Scene, &Path),
+    beside_fluid: bool,
     memory_left: usize,
 ) -> Result<(Vec<Site>, Aabb), shapes::FillError> {
     let sites = match endless_tool(body, formulation.name, scene, folder) {
         Some(sites) => sites,
         None => {
             let filling = Filling {
-                lattice: body.lattice,
+                lattice: body.lattice.chosen(&body.shape, beside_fluid),
                 spacing: body.spacing,
                 dimension: scene.dimension,
                 folder,
@@ -170,6 +173,10 @@ fn endless_tool(
         Site { position: middle + body.spacing * DVec3::new(side(0), side(1), side(2)), volume }
     };
     Some((0..1 << axes).map(corner).collect())
+}
+
+fn is_fluid(body: &BodyDescription, registry: &Registry) -> bool {
+    registry.find_formulation(&body.formulation).is_ok_and(|entry| entry.kind == BodyKind::Fluid)
 }
 
 fn parse_formulation<'r>(registry: &'r Registry, item: &Item) -> Result<Parsed<'r>, Vec<Problem>> {

@@ -19,7 +19,7 @@ use std::path::Path;
 use super::{FillError, FillErrorKind, Filling, Lattice, Shape, Site, fill};
 use crate::scene::Dimension;
 
-fn shape(text: &str) -> Shape {
+pub(super) fn shape(text: &str) -> Shape {
     ron::from_str(text).unwrap()
 }
 

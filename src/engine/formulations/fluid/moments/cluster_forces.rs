@@ -4,12 +4,14 @@
 //! particles k of its cluster, with B_w such that they add up to M_w and to no force
 //! ([`affine`](crate::formulations::fluid::rotation)). Their power is `M_w : L_w` with the gradient L_w of
 //! the motion of the cluster by the same B.
+//!
+//! A particle alone, or a row of particles about its line, has no couple.
 
 use glam::{DMat3, DVec3};
 
 use crate::formulations::fluid::cloud::{Cluster, FlowCloud, Group, Neighborhood, PARTS};
 use crate::formulations::fluid::lanes::FlowParticle;
-use crate::formulations::fluid::rotation::affine;
+use crate::formulations::fluid::rotation::{affine, axial};
 use crate::neighbors::Periodic;
 use crate::parallel::for_each_block;
 use crate::world::Force;
@@ -38,7 +40,12 @@ pub struct BodyClusters<'a> {
 struct MomentShift<const N: usize> {
     mean: DVec3,
     maps: [DMat3; N],
+    /// Couple of the first moment that the cluster does not carry, N m.
+    lost: DVec3,
 }
+
+/// Share of a moment below which what is lost of its couple is round-off.
+const ROUND_OFF: f64 = 1e-9;
 
 type Rows<'a> = (&'a mut [Force], &'a mut [[DVec3; PARTS]]);
 type ShiftRows<'a, const N: usize> = (&'a mut [bool], &'a mut [MomentShift<N>]);
@@ -56,7 +63,7 @@ impl<const N: usize> ClusterForces<N> {
         moments: impl Fn(usize) -> [DMat3; N] + Sync,
     ) {
         let (records, periodic) = (&cloud.records[group.cloud.clone()], cloud.pairs.periodic());
-        let none = MomentShift { mean: DVec3::ZERO, maps: [DMat3::ZERO; N] };
+        let none = MomentShift { mean: DVec3::ZERO, maps: [DMat3::ZERO; N], lost: DVec3::ZERO };
         self.acts.resize(records.len(), false);
         let fade = self.fade;
         self.shifts.resize(records.len(), none);
@@ -70,7 +77,9 @@ impl<const N: usize> ClusterForces<N> {
                     let share = if fade { near.share(&cluster) } else { 1.0 };
                     let Cluster { mean, moment, .. } = cluster;
                     let map = |first: DMat3| affine(&moment, first * share, cloud.plane);
-                    *shift = MomentShift { mean, maps: moments.map(map) };
+                    let maps = moments.map(map);
+                    *shift =
+                        MomentShift { mean, maps, lost: lost(&moments[0], maps[0] * moment.to_matrix()) };
                 }
             }
         });
@@ -95,12 +104,17 @@ impl<const N: usize> ClusterForces<N> {
         });
     }
 
+    /// Sum of the couples that clusters do not carry, N m.
+    pub fn lost(&self) -> DVec3 {
+        self.acts.iter().zip(&self.shifts).filter(|(acts, _)| **acts).map(|(_, shift)| shift.lost).sum()
+    }
+
     /// The forces on particle `k` of all clusters that it is in.
     fn on(&self, near: &Neighborhood, records: &[FlowParticle], k: usize, periodic: &Periodic) -> [DVec3; N] {
         let (own, shifts) = (&records[k], &self.shifts);
         let mut forces = [DVec3::ZERO; N];
         if self.acts[k] {
-            let MomentShift { mean, maps } = &shifts[k];
+            let MomentShift { mean, maps, .. } = &shifts[k];
             forces = maps.map(|map| map * -*mean);
         }
         for &w in near.list.row(k) {
@@ -109,10 +123,17 @@ impl<const N: usize> ClusterForces<N> {
             }
             let x = periodic.minimal_image(own.position() - records[w as usize].position());
             if near.are_near(x) {
-                let MomentShift { mean, maps } = &shifts[w as usize];
+                let MomentShift { mean, maps, .. } = &shifts[w as usize];
                 (0..N).for_each(|n| forces[n] += maps[n] * (x - *mean));
             }
         }
         forces.map(|force| own.volume() * force)
     }
+}
+
+/// The couple of a moment less that of what is carried of it.
+fn lost(moment: &DMat3, carried: DMat3) -> DVec3 {
+    let couple = axial(&(*moment - carried));
+    let size = moment.x_axis.length() + moment.y_axis.length() + moment.z_axis.length();
+    if couple.length() > ROUND_OFF * size { couple } else { DVec3::ZERO }
 }

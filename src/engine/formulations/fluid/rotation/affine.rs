@@ -30,7 +30,7 @@ pub fn affine(moment: &Sym3, first: DMat3, plane: bool) -> DMat3 {
 }
 
 /// `sum x x v` of `sum v (x) x`.
-fn axial(first: &DMat3) -> DVec3 {
+pub fn axial(first: &DMat3) -> DVec3 {
     let [x, y, z] = [first.x_axis, first.y_axis, first.z_axis];
     DVec3::new(y.z - z.y, z.x - x.z, x.y - y.x)
 }

@@ -6,5 +6,5 @@ mod spin;
 
 mod body_gradient;
 
-pub use affine::affine;
+pub use affine::{affine, axial};
 pub use spin::{Spin, rotation};

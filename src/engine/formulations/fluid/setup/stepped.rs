@@ -76,14 +76,16 @@ mod tests {
         let disc = "shape: Sphere(center: (0, 0), radius: 0.1)";
         let hollow = "shape: Difference(Sphere(center: (0, 0), radius: 0.1), Sphere(center: (0.02, 0.01), radius: 0.05))";
         let with = |shape: &str, lattice: &str| format!("{shape}, lattice: {lattice}");
-        assert!(told(disc, "Rigid", 0.0));
-        assert!(told(hollow, "Rigid", 0.0));
+        assert!(told(&with(disc, "Regular"), "Rigid", 0.0));
+        assert!(told(&with(hollow, "Regular"), "Rigid", 0.0));
         assert!(told(&with(disc, "Hexagonal"), "Rigid", 0.0));
         for lattice in ["Concentric", "BodyFitted()", "Relaxed(seed: 1, iterations: 30)"] {
             assert!(!told(&with(disc, lattice), "Rigid", 0.0), "{lattice}");
         }
-        assert!(!told(disc, "Rigid(rotation: Held)", 0.0));
-        assert!(!told(disc, "Rigid", 1.0), "friction turns it");
+        assert!(!told(disc, "Rigid", 0.0));
+        let stepped = with(disc, "Regular");
+        assert!(!told(&stepped, "Rigid(rotation: Held)", 0.0));
+        assert!(!told(&stepped, "Rigid", 1.0), "friction turns it");
         assert!(!told("shape: Box(min: (-0.1, -0.1), max: (0.1, 0.1))", "Rigid", 0.0));
     }
 }

@@ -89,7 +89,7 @@ fn a_drop_that_splashes_and_leaves_the_domain_had_a_free_surface() {
             materials: {"water": Fluid(density: 1000.0, sound_speed: 40.0), "steel": NeoHookean(density: 2000.0, young: 1e7, poisson: 0.3)},
             bodies: [
                 (name: "water", material: "water", shape: Box(min: (-0.05, 0), max: (0.05, 0.1)), spacing: 0.01, velocity: (0, -3), formulation: Fluid),
-                (name: "sphere", material: "steel", shape: Sphere(center: (0, -0.15), radius: 0.05), spacing: 0.01, formulation: Rigid()),
+                (name: "sphere", material: "steel", shape: Sphere(center: (0, -0.15), radius: 0.05), spacing: 0.01, lattice: Regular, formulation: Rigid()),
             ],
             conditions: [Fix(on: Select(body: "sphere"))],
             time: (end: 0.5))"#,

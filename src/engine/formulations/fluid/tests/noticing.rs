@@ -256,8 +256,8 @@ fn disc(pressure: &str, end: f64) -> Vec<String> {
             materials: {{"oil": Fluid(density: 1000.0, sound_speed: 6.0, viscosity: 10.0), "steel": NeoHookean(density: 4500.0, young: 1e7, poisson: 0.3)}},
             bodies: [
                 (name: "oil", material: "oil", shape: Difference(Box(min: (0, 0), max: (0.4, 0.6)), Sphere(center: (0.2, 0.4), radius: 0.08)),
-                 spacing: 0.02, formulation: Fluid({pressure})),
-                (name: "disc", material: "steel", shape: Sphere(center: (0.2, 0.4), radius: 0.08), spacing: 0.02, formulation: Rigid()),
+                 spacing: 0.02, lattice: Regular, formulation: Fluid({pressure})),
+                (name: "disc", material: "steel", shape: Sphere(center: (0.2, 0.4), radius: 0.08), spacing: 0.02, lattice: Regular, formulation: Rigid()),
                 (name: "tank", material: "wall", spacing: 0.02, formulation: Wall(slip: No, suction: true),
                  shape: Difference(Box(min: (-0.06, -0.06), max: (0.46, 0.66)), Box(min: (0, 0), max: (0.4, 0.6)))),
             ],

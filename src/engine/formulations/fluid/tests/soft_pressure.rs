@@ -22,9 +22,9 @@ fn immersed(
             materials: {{"water": Fluid(density: 1000.0, sound_speed: 10.0),
                          "rubber": NeoHookean(density: 1000.0, young: 1.0e5, poisson: 0.3)}},
             bodies: [
-                (name: "water", material: "water", spacing: 0.1, formulation: Fluid(pressure: "1000"),
+                (name: "water", material: "water", spacing: 0.1, lattice: Regular, formulation: Fluid(pressure: "1000"),
                  shape: Difference(Box(min: {low}, max: {high}), {shape})),
-                (name: "body", material: "rubber", spacing: 0.1, formulation: {formulation}, shape: {shape}),
+                (name: "body", material: "rubber", spacing: 0.1, lattice: Regular, formulation: {formulation}, shape: {shape}),
             ], {more})"#
     )
 }

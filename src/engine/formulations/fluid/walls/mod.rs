@@ -35,3 +35,4 @@ pub use surface_distance::apart;
 pub use wall::{PreviousVelocity, Slip, Wall, WallBody, has_suction};
 pub use wall_compression::WallCompression;
 pub use wall_state::WallState;
+pub use whole_body::WholeBody;

@@ -49,6 +49,11 @@ impl WholeBody {
         self.load.push(arm, force);
     }
 
+    /// Adds a couple, N m.
+    pub fn turn(&mut self, couple: DVec3) {
+        self.load.torque += couple;
+    }
+
     /// Calls `add` with every particle of the group, by its number there, and the force on it, N.
     pub fn for_each_force(&self, cloud: &FlowCloud, group: &Group, mut add: impl FnMut(usize, DVec3)) {
         let spin = rotation(&self.moment, self.load.torque, cloud.plane);
