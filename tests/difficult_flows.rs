@@ -213,7 +213,7 @@ fn the_force_on_a_wedge_that_enters_water_is_that_of_the_similarity_solution() {
         bodies: [
             (name: "water", material: "water", shape: Box(min: (-1.0, -1.0), max: (1.0, 0.0)), spacing: 0.01, formulation: Fluid(pressure: 0.0),
              plugins: [density_diffusion(), artificial_viscosity(alpha: 0.02, beta: 0.0)]),
-            (name: "wedge", material: "steel", shape: Polygon(points: [(0.0, 0.005), (0.3, 0.1782050807568877), (-0.3, 0.1782050807568877)]), spacing: 0.01,
+            (name: "wedge", material: "steel", shape: Polygon(points: [(0.0, 0.005), (0.3, 0.1782050807568877), (-0.3, 0.1782050807568877)]), spacing: 0.01, lattice: Regular,
              formulation: Wall(slip: Free), velocity: (0.0, -1)),
             (name: "tank", material: "wall", shape: Difference(Box(min: (-1.04, -1.04), max: (1.04, 0.3)), Box(min: (-1.0, -1.0), max: (1.0, 1.0))),
              spacing: 0.01, formulation: Wall(slip: Free)),
@@ -267,7 +267,8 @@ fn a_lattice_that_is_drawn_apart_is_warned_of_and_a_relaxed_one_is_not() {
 }
 
 /// Velocity of a disc that a force drives along a channel without flux, 2.7 times as wide, over that of Faxen
-/// (1946), at a speed of sound, m/s; and whether the user has been told that the oil is compressed.
+/// (1946), at a speed of sound, m/s, in the mean of the last passage of sound through the channel (it swings
+/// with that period) or of 25 s; and whether the user has been told that the oil is compressed.
 fn driven_disc(sound: f64) -> (f64, bool) {
     let (radius, half, velocity) = (0.1, 0.8 / 3.0, 1e-4);
     let k: f64 = radius / half;
@@ -288,9 +289,16 @@ fn driven_disc(sound: f64) -> (f64, bool) {
         conditions: [Force(on: Select(body: "disc"), value: ({force:?}, 0.0)), MeanVelocity(bodies: ["oil", "disc"], value: (0.0, None))],
         time: (end: 30.0))"#
     ));
+    let period = (2.0 * end / sound).min(25.0);
+    let place = |sim: &Simulation| {
+        let (view, rows) = sim.world().body_view(BodyId(2));
+        (sim.clock().time, view.read::<Position>().expect("places")[rows.start].0.x)
+    };
+    run(&mut sim, 30.0 - period);
+    let before = place(&sim);
     run(&mut sim, 30.0);
-    let (view, rows) = sim.world().body_view(BodyId(2));
-    let speed = view.read::<Velocity>().expect("velocities")[rows.start].0.x;
+    let after = place(&sim);
+    let speed = (after.1 - before.1) / (after.0 - before.0);
     (speed / velocity, says(&sim, "is compressed unevenly"))
 }
 

@@ -1,17 +1,20 @@
 //! The arrangement of particles inside a shape.
 
+use std::path::Path;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::shape::Shape;
+use crate::space::Dimension;
 
 /// How particles are laid out inside a shape. With every layout a particle takes spacing^2 (two dimensions)
 /// or spacing^3 (three) of the shape on average, and the volumes add up to that of the shape.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum Lattice {
-    /// `Regular`; in a scene with a fluid `BodyFitted()` for bodies with oblique or curved faces, whose steps
-    /// in a regular lattice would brake the fluid.
+    /// `Regular`; in a scene with a fluid `Concentric` for round bodies, and `BodyFitted()` for others with
+    /// oblique or curved faces, whose steps in a regular lattice would brake the fluid.
     #[default]
     Automatic,
     /// Cell centres of a square (two dimensions) or cubic (three) lattice that tiles the bounding box of the
@@ -46,14 +49,15 @@ pub enum Lattice {
 }
 
 impl Lattice {
-    /// This lattice, where `Automatic` has chosen one: for a shape in a scene with or without a fluid.
-    pub fn chosen(self, shape: &Shape, beside_fluid: bool) -> Self {
-        match self {
-            Self::Automatic if beside_fluid && !shape.is_rectilinear() => {
-                Self::BodyFitted { iterations: default_fitting() }
-            }
-            Self::Automatic => Self::Regular,
-            _ => self,
+    /// This lattice, where `Automatic` has chosen one for a shape in a scene with a fluid.
+    pub fn beside_fluid(self, shape: &Shape, dimension: Dimension, folder: &Path) -> Self {
+        if self != Self::Automatic || shape.is_rectilinear() {
+            return self;
+        }
+        let region = shape.region(dimension, folder, "shape");
+        match region.ok().and_then(|region| region.rings()) {
+            Some(_) => Self::Concentric,
+            None => Self::BodyFitted { iterations: default_fitting() },
         }
     }
 }

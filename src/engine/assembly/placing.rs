@@ -47,13 +47,11 @@ pub(super) fn place_bodies<'r>(
     for (k, body) in scene.bodies.iter().enumerate() {
         let place = || {
             let formulation = parse_formulation(registry, &body.formulation)?;
-            let (sites, bounds) =
-                fill(body, formulation.0, (scene, source.folder()), beside_fluid, memory_left).map_err(
-                    |error| {
-                        let path = format!("bodies[{k}].{}", error.path);
-                        vec![Problem::at_path(path, error.message()).helps(error.kind.help())]
-                    },
-                )?;
+            let filled = fill(body, formulation.0, (scene, source.folder()), beside_fluid, memory_left);
+            let (sites, bounds) = filled.map_err(|error| {
+                let path = format!("bodies[{k}].{}", error.path);
+                vec![Problem::at_path(path, error.message()).helps(error.kind.help())]
+            })?;
             Ok((formulation, sites, bounds))
         };
         let parts = place().map_err(|found: Vec<Problem>| problems.extend(found));
@@ -129,8 +127,12 @@ fn fill(
     let sites = match endless_tool(body, formulation.name, scene, folder) {
         Some(sites) => sites,
         None => {
+            let lattice = match beside_fluid {
+                true => body.lattice.beside_fluid(&body.shape, scene.dimension, folder),
+                false => body.lattice,
+            };
             let filling = Filling {
-                lattice: body.lattice.chosen(&body.shape, beside_fluid),
+                lattice,
                 spacing: body.spacing,
                 dimension: scene.dimension,
                 folder,

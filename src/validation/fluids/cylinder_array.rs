@@ -57,7 +57,6 @@ fn cylinder_array(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         Ok(())
     })?;
     // A cylinder of few spacings is a staircase.
-    let most = if across >= 80 { 0.03 } else { 0.08 };
     // The pressure gradient that the body force replaces also acts on the cylinder: the drag is the body
     // force on the whole cell.
     Ok(vec![

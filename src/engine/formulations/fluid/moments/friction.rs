@@ -3,8 +3,8 @@
 //! The force of a pair across a surface acts at the midpoint of the pair: half of the couple `x_ij x f_ij`
 //! then acts on the fluid, where the spin balances it. On the boundary the force acts on a particle below the
 //! surface, so that its first moment `M_w = 1/2 sum_f f_wf (x) x_wf` is missing: the torque on the boundary
-//! would be too small, and a soft body would be sheared from below its surface. [`ClusterForces`] apply it, and
-//! forces on all of a rigid body where one of its particles is alone, in an acute edge.
+//! would be too small, and a soft body would be sheared from below its surface. [`ClusterForces`] apply it,
+//! and forces on all of a rigid body where one of its particles is alone, in an acute edge.
 //!
 //! The velocity of the surface at the midpoint of a pair follows from the motion of the cluster: the work of
 //! these forces is that of friction there.
@@ -14,9 +14,9 @@ use std::ops::Range;
 use glam::{DMat3, DVec3};
 
 use super::cluster_forces::{BodyClusters, ClusterForces};
+use super::whole_body::WholeBody;
 use crate::formulations::fluid::cloud::{FlowCloud, Group, NearPairs, PARTS, RowPass, RowSums};
 use crate::formulations::fluid::lanes::{Axial, pack_axial};
-use crate::formulations::fluid::walls::WholeBody;
 use crate::parallel::{Arithmetic, Vector};
 use crate::world::Force;
 

@@ -2,6 +2,8 @@
 
 mod cluster_forces;
 
+mod whole_body;
+
 mod friction;
 
 mod pressure;
@@ -12,3 +14,4 @@ mod stretching;
 
 pub use stretching::SurfaceStretching;
 pub use surface::SurfaceMoments;
+pub use whole_body::WholeBody;

@@ -8,8 +8,6 @@ mod surface_distance;
 
 mod repulsion;
 
-mod whole_body;
-
 mod wall_compression;
 
 mod wall_pressure;
@@ -35,4 +33,3 @@ pub use surface_distance::apart;
 pub use wall::{PreviousVelocity, Slip, Wall, WallBody, has_suction};
 pub use wall_compression::WallCompression;
 pub use wall_state::WallState;
-pub use whole_body::WholeBody;

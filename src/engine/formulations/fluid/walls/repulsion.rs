@@ -16,13 +16,13 @@
 //! This energy does not change when fluid and body move together, so that the opposite force acts on the body
 //! at the place of the fluid particle. The particles of the body around that carry it by shares whose centre
 //! is there; before an acute edge of a rigid body, where none are around, all of the body does
-//! ([`whole_body`](super::whole_body)).
+//! ([`WholeBody`]).
 
 use glam::DVec3;
 
 use super::surface_distance::BoundaryShape;
-use super::whole_body::WholeBody;
 use crate::formulations::fluid::cloud::{FlowCloud, Group, LoadCarrier, PARTS, Repelled, Role, Shares};
+use crate::formulations::fluid::moments::WholeBody;
 use crate::parallel::{for_each_block, own_rows};
 use crate::plugin::SimBuilder;
 use crate::ranks::has_several;
