@@ -195,6 +195,7 @@ fn a_thin_support_along_one_axis_is_said() {
         warned(&format!("within: Box(min: (-1, -1), max: ({:?}, 1))", 0.05 * f64::from(columns) + 0.01))
     };
     assert!(strip(1) && strip(2) && !strip(3) && !warned("face: MinX"));
+    assert!(!warned("face: MinX, within: Box(min: (-1, -1), max: (1, 0.3))"), "a part of a side");
 }
 
 /// A block pressed to a half of its height between symmetry planes, where the stress is the pressure on the

@@ -18,16 +18,14 @@ pub(super) fn warn(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>)
     for item in &scene.conditions {
         registry.support(item, |support| {
             let all = support.axes[..scene.dimension.count()].iter().all(|axis| *axis);
-            let is_part = !all && item.name() == "Fix" && support.on.within.is_some();
+            // A layer that stands on its side, or on a part of it, needs nothing behind it.
+            let is_side = sides_are_placed && support.on.face.is_some() && support.edge == Edge::Stated;
+            let is_part = !all && !is_side && item.name() == "Fix" && support.on.within.is_some();
             let is_part = is_part && support.on.nearest.is_none() && support.edge == Edge::Stated;
-            // A layer that stands on its side needs nothing behind it.
-            let is_side = support.on.face.is_some() && support.edge == Edge::Stated;
             // A fault of a selection is reported where the condition is built.
             let Ok(selection) = sim.select_at_start(support.on, "on") else { return };
             let marks = if is_part { &mut partly } else { &mut held };
-            for (id, rows) in
-                selection.parts.iter().filter(|_| is_part || all && !(is_side && sides_are_placed))
-            {
+            for (id, rows) in selection.parts.iter().filter(|_| is_part || all && !is_side) {
                 let first = sim.bodies[id.0].rows.start;
                 rows.iter().for_each(|row| marks[id.0][*row as usize - first] = true);
             }
