@@ -3,19 +3,21 @@
 use crate::notation::quantity;
 use crate::plugin::{BodyKind, BodyPlan, Offer, Registry, SimBuilder};
 use crate::scene::{Edge, Scene};
+use crate::world::BodyId;
 
 /// Distance over the length of the body from which on it is worth a word.
 const NOTABLE: f64 = 0.01;
 /// How far inside of a side the support acts, over the spacing, where particles stay in their lattice:
 /// measured on strips of 16 and 32 spacings, whose outermost layers hardly strain.
 const OF_SIDE: f64 = 1.0;
-/// The same in a lattice beside a fluid, whose particles are the surface of the body: half a spacing.
-const OF_WET_SIDE: f64 = 0.5;
+/// The same in a lattice beside a fluid, whose particles are the surface of the body, and of particles from a
+/// file, whose surface is not known: half a spacing.
+const OF_LATTICE_SIDE: f64 = 0.5;
 /// How far before the edge of a shape it ends.
 const OF_PART: f64 = 0.5;
 
 /// Warns of every body that `Fix` holds within a shape along some axes only, and of those that it holds by a
-/// side where the formulation or a fluid leaves particles in their lattice. Where kernels follow the present
+/// side where the formulation, a fluid or a file leaves particles in place. Where kernels follow the present
 /// configuration, a part that is held as deep as they reach ends where its shape does: 0.3 % too soft on a
 /// strip of 25 spacings.
 pub(super) fn warn(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>) {
@@ -37,6 +39,7 @@ pub(super) fn warn(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>)
                 warnings.extend(match support.on.face {
                     Some(face) if !body.offers(Offer::Sides) => of_side(body, face.outward().0),
                     Some(face) if is_wet => of_wet_side(body, face.outward().0),
+                    Some(face) if !has_surface(scene, *id, sim) => of_file_side(body, face.outward().0),
                     None if some && support.on.within.is_some() && body.offers(Offer::Supports) => {
                         of_part(body)
                     }
@@ -46,6 +49,11 @@ pub(super) fn warn(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>)
         });
     }
     warnings.into_iter().for_each(|warning| sim.warn(warning));
+}
+
+/// Whether the shape of a body has a surface; particles from a file have none.
+fn has_surface(scene: &Scene, id: BodyId, sim: &SimBuilder<'_>) -> bool {
+    scene.bodies[id.0].shape.region(scene.dimension, sim.folder(), "shape").is_ok()
 }
 
 /// A distance as text, with its share of a length in percent, if that is notable.
@@ -62,9 +70,17 @@ fn of_side(body: &BodyPlan, axis: usize) -> Option<String> {
 }
 
 fn of_wet_side(body: &BodyPlan, axis: usize) -> Option<String> {
-    let (way, percent) = share(OF_WET_SIDE * body.spacing, body.bounds.extent()[axis])?;
+    let (way, percent) = share(OF_LATTICE_SIDE * body.spacing, body.bounds.extent()[axis])?;
     Some(format!(
         "body `{}` is held by a side in a scene with fluids, where its particles stay in their lattice: the support acts {way} inside of it, and the body is {percent:.1} % stiffer for each side, three times that in bending; let the body go on behind the side for a support radius of its kernel and hold that part by `within`, or use a smaller spacing",
+        body.name
+    ))
+}
+
+fn of_file_side(body: &BodyPlan, axis: usize) -> Option<String> {
+    let (way, percent) = share(OF_LATTICE_SIDE * body.spacing, body.bounds.extent()[axis])?;
+    Some(format!(
+        "body `{}` is held by a side, and its particles are from a file, which states no surface: the support acts at the outermost of them, {way} inside of the side that they stand for, and the body is {percent:.1} % stiffer for each side, three times that in bending; let the particles go on behind the side for a support radius of its kernel and hold that part by `within`, or use a smaller spacing",
         body.name
     ))
 }

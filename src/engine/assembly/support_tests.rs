@@ -181,6 +181,33 @@ fn a_side_that_is_held_beside_a_fluid_is_told() {
 }
 
 #[test]
+fn a_side_of_particles_from_a_file_that_is_held_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let cells = (0..80).map(|k| (0.005 + 0.01 * f64::from(k % 20), 0.005 + 0.01 * f64::from(k / 20)));
+    let csv: String = cells.map(|(x, y)| format!("{x},{y},1e-4\n")).collect();
+    std::fs::write(folder.path().join("strip.csv"), format!("x,y,volume\n{csv}")).unwrap();
+    let told = |shape: &str, condition: &str| {
+        let text = format!(
+            r#"(dimension: Two, materials: {{"soft": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)}},
+                bodies: [(name: "strip", material: "soft", shape: {shape}, spacing: 0.01, formulation: TotalLagrangian)],
+                conditions: [{condition}], time: (end: 0.05))"#
+        );
+        let name = folder.path().join("scene.ron").to_string_lossy().into_owned();
+        let (scene, source) = parse(Source::new(name, text)).unwrap_or_else(|e| panic!("{e}"));
+        let sim = build(&scene, &source, &Registry::standard()).unwrap_or_else(|e| panic!("{e}"));
+        // Half a spacing of the 0.19 m between the outermost particles.
+        sim.warnings().iter().any(|text| text.contains("is 2.6 % stiffer for each side"))
+    };
+    let (points, side) = (r#"Points(file: "strip.csv")"#, "Fix(on: Select(face: MinX))");
+    let moved = format!("Translate(shape: {points}, by: (1, 0))");
+    assert!(
+        told(points, side) && told(&moved, side) && told(points, "Fix(on: Select(face: MinX), axes: [X])")
+    );
+    let part = "Fix(on: Select(within: Box(min: (0, 0), max: (0.03, 1))))";
+    assert!(!told(points, part) && !told("Box(min: (0, 0), max: (0.2, 0.04))", side));
+}
+
+#[test]
 fn metal_that_a_side_draws_along_its_normal_alone_is_warned_of() {
     let metal = "J2(density: 7850, young: 2e11, poisson: 0.3, hardening: Perfect(yield_stress: 4e8))";
     let rubber = "NeoHookean(density: 1000, young: 1e6, poisson: 0.3)";
