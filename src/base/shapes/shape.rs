@@ -132,8 +132,8 @@ pub enum Shape {
         #[serde(default)]
         about: Vec3,
     },
-    /// Particles from a file, in place of a lattice. Their surface is not known: loads, contact and supports by
-    /// `face` act on the outermost ones.
+    /// Particles from a file, in place of a lattice. Their surface is not known: loads, contact and supports
+    /// by `face` act on the outermost ones.
     Points {
         /// CSV file with the header `x,y,volume` or `x,y,z,volume`, in m and m^3 (two dimensions: m^2);
         /// further columns are ignored. Relative to the scene's folder.
