@@ -1,20 +1,16 @@
 //! The arrangement of particles inside a shape.
 
-use std::path::Path;
-
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use super::shape::Shape;
-use crate::space::Dimension;
 
 /// How particles are laid out inside a shape. With every layout a particle takes spacing^2 (two dimensions)
 /// or spacing^3 (three) of the shape on average, and the volumes add up to that of the shape.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum Lattice {
-    /// `Regular`; in a scene with a fluid `Concentric` for round bodies, and `BodyFitted()` for others with
-    /// oblique or curved faces, whose steps in a regular lattice would brake the fluid.
+    /// `Regular`; in a scene with a fluid `Concentric` for discs, rings, cylinders and tubes, and `BodyFitted()`
+    /// for all others with faces that do not lie between two layers of the regular lattice: oblique and curved
+    /// ones, whose steps would brake the fluid, and those that cut through cells.
     #[default]
     Automatic,
     /// Cell centres of a square (two dimensions) or cubic (three) lattice that tiles the bounding box of the
@@ -49,16 +45,9 @@ pub enum Lattice {
 }
 
 impl Lattice {
-    /// This lattice, where `Automatic` has chosen one for a shape in a scene with a fluid.
-    pub fn beside_fluid(self, shape: &Shape, dimension: Dimension, folder: &Path) -> Self {
-        if self != Self::Automatic || shape.is_rectilinear() {
-            return self;
-        }
-        let region = shape.region(dimension, folder, "shape");
-        match region.ok().and_then(|region| region.rings()) {
-            Some(_) => Self::Concentric,
-            None => Self::BodyFitted { iterations: default_fitting() },
-        }
+    /// `BodyFitted` with its default.
+    pub(super) const fn body_fitted() -> Self {
+        Self::BodyFitted { iterations: default_fitting() }
     }
 }
 

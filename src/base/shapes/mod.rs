@@ -1,5 +1,6 @@
 //! Shapes and their filling with particles: the fields `shape`, `lattice` and `spacing` of a scene.
 
+mod automatic;
 mod block;
 mod boolean;
 mod build;
@@ -25,7 +26,6 @@ mod openings;
 mod points;
 mod polygon;
 mod quadrature;
-mod rectilinear;
 mod region;
 mod relaxed;
 mod ring;

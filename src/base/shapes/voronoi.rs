@@ -56,7 +56,7 @@ pub(super) fn moments(
     let leaf = if tiling.axes == 2 { 8 } else { 4 };
     let blocks = tiling.blocks(region, leaf, leaf);
     let of_block = |block: &CellBox| {
-        let (mut found, mut buffers) = (Vec::new(), Buffers::default());
+        let (mut found, mut buffers) = (Vec::new(), SampleBuffers::default());
         block.cells().for_each(|cell| sampling.add_cell((cell, block.inside), &mut buffers, &mut found));
         found
     };
@@ -92,9 +92,9 @@ fn share(sample: &Sample, near: &[(DVec3, u32)], width: f64) -> f64 {
     (0.5 + to_plane / width).min(1.0)
 }
 
-/// Buffers of the sampling, kept from cell to cell.
+/// SampleBuffers of the sampling, kept from cell to cell.
 #[derive(Default)]
-struct Buffers {
+struct SampleBuffers {
     samples: Samples,
     near: Vec<(DVec3, u32)>,
     sums: Vec<CellMoments>,
@@ -105,11 +105,11 @@ impl Sampling<'_> {
     fn add_cell(
         &self,
         (cell, inside): ([usize; 3], bool),
-        buffers: &mut Buffers,
+        buffers: &mut SampleBuffers,
         found: &mut Vec<(u32, CellMoments)>,
     ) {
         let Self { buckets, points, .. } = *self;
-        let Buffers { samples, near, sums } = buffers;
+        let SampleBuffers { samples, near, sums } = buffers;
         self.place(samples, cell, inside);
         if samples.is_empty() {
             return;

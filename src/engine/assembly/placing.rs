@@ -127,18 +127,15 @@ fn fill(
     let sites = match endless_tool(body, formulation.name, scene, folder) {
         Some(sites) => sites,
         None => {
-            let lattice = match beside_fluid {
-                true => body.lattice.beside_fluid(&body.shape, scene.dimension, folder),
-                false => body.lattice,
-            };
             let filling = Filling {
-                lattice,
+                lattice: body.lattice,
                 spacing: body.spacing,
                 dimension: scene.dimension,
                 folder,
                 limit: memory_left / formulation.bytes_per_particle,
                 is_wall: formulation.kind == BodyKind::Boundary,
             };
+            let filling = if beside_fluid { filling.beside_fluid(&body.shape) } else { filling };
             shapes::fill(&body.shape, filling)?
         }
     };

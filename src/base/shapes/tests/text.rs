@@ -75,7 +75,7 @@ fn lattices() {
             assert_eq!(options.from_str::<Lattice>(text).unwrap(), lattice);
         }
     }
-    assert_eq!(Lattice::default(), Lattice::Regular);
+    assert_eq!(Lattice::default(), Lattice::Automatic);
 }
 
 #[test]
