@@ -44,8 +44,8 @@ impl Filling<'_> {
             let is_regular = self.ends_at(&faces, region.as_ref());
             return if is_regular { Lattice::Regular } else { Lattice::body_fitted() };
         }
-        // Shells about a centre are less even than what fits a ball of a few spacings: as grains of an abrasive
-        // flow such balls made the shift of the fluid supply energy.
+        // Shells about a centre are less even than what fits a ball of a few spacings: grains of that kind in
+        // an abrasive flow made the shift of the fluid supply energy.
         match region.rings() {
             Some(Rings::Plane { .. } | Rings::Axial { .. }) => Lattice::Concentric,
             _ => Lattice::body_fitted(),

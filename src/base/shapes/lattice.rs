@@ -8,9 +8,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum Lattice {
-    /// `Regular`; in a scene with a fluid `Concentric` for discs, rings, cylinders and tubes, and `BodyFitted()`
-    /// for all others with faces that do not lie between two layers of the regular lattice: oblique and curved
-    /// ones, whose steps would brake the fluid, and those that cut through cells.
+    /// `Regular`; in a scene with a fluid `Concentric` for discs, rings, cylinders and tubes, and
+    /// `BodyFitted()` for all others with faces that do not lie between two layers of the regular lattice:
+    /// oblique and curved ones, whose steps would brake the fluid, and those that cut through cells.
     #[default]
     Automatic,
     /// Cell centres of a square (two dimensions) or cubic (three) lattice that tiles the bounding box of the

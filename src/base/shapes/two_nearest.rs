@@ -26,7 +26,7 @@ struct Nearest {
 }
 
 /// A sample with the two nearest points: squared distance \[m²\] and index of each.
-pub(super) struct Sample {
+pub(super) struct SampledPoint {
     pub point: DVec3,
     /// Fraction that is inside the region.
     pub part: f64,
@@ -53,10 +53,10 @@ impl Samples {
     }
 
     /// The samples with the nearest ones of `near`. Of points at the same distance the first one counts.
-    pub fn among(&mut self, near: &[(DVec3, u32)]) -> impl Iterator<Item = Sample> {
-        run_hot(Search { samples: self, near });
+    pub fn among(&mut self, near: &[(DVec3, u32)]) -> impl Iterator<Item = SampledPoint> {
+        run_hot(NearestSearch { samples: self, near });
         let Self { x, y, z, parts, nearest } = &*self;
-        (0..parts.len()).map(move |k| Sample {
+        (0..parts.len()).map(move |k| SampledPoint {
             point: DVec3::new(x[k], y[k], z[k]),
             part: parts[k],
             first: (nearest.first[k], nearest.first_index[k] as usize),
@@ -65,12 +65,12 @@ impl Samples {
     }
 }
 
-struct Search<'a> {
+struct NearestSearch<'a> {
     samples: &'a mut Samples,
     near: &'a [(DVec3, u32)],
 }
 
-impl HotLoop for Search<'_> {
+impl HotLoop for NearestSearch<'_> {
     type Output = ();
 
     #[inline(always)]

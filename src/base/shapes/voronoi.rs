@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::region::Region;
 use super::tiling::{CellBox, Tiling};
-use super::two_nearest::{Sample, Samples};
+use super::two_nearest::{SampledPoint, Samples};
 
 /// Volume and first moment of a Voronoi cell.
 #[derive(Clone, Copy, Default)]
@@ -83,7 +83,7 @@ struct Sampling<'a> {
 /// plane of the two points cuts is divided as if the plane were parallel to one of its faces, so that the
 /// error decreases with the square of the sample size.
 #[inline]
-fn share(sample: &Sample, near: &[(DVec3, u32)], width: f64) -> f64 {
+fn share(sample: &SampledPoint, near: &[(DVec3, u32)], width: f64) -> f64 {
     if !sample.second.0.is_finite() {
         return 1.0;
     }
