@@ -166,8 +166,8 @@ impl Filling<'_> {
             return concentric::sites(&rings, spacing);
         }
         let packing = if self.lattice == Lattice::Hexagonal { Packing::Hexagonal } else { Packing::Centered };
-        let cavity =
-            if self.is_wall && self.lattice == Lattice::Regular { region.wall_frame(spacing) } else { None };
+        let is_regular = matches!(self.lattice, Lattice::Automatic | Lattice::Regular);
+        let cavity = if self.is_wall && is_regular { region.wall_frame(spacing) } else { None };
         let frame = cavity.unwrap_or_else(|| region.frame());
         let positions = cells::points(region, &frame, packing, spacing, axes)?;
         let alike = |positions: Vec<DVec3>, volume: f64| {

@@ -62,6 +62,7 @@ fn unknown_names_and_fields_are_refused() {
 #[test]
 fn lattices() {
     for (text, lattice) in [
+        ("Automatic", Lattice::Automatic),
         ("Regular", Lattice::Regular),
         ("Square", Lattice::Regular),
         ("Cubic", Lattice::Regular),

@@ -12,7 +12,7 @@ fn wall(text: &str, dimension: Dimension) -> Vec<Site> {
     fill(
         &shape(text),
         Filling {
-            lattice: Lattice::Regular,
+            lattice: Lattice::default(),
             spacing: 0.02,
             dimension,
             folder: Path::new("."),
