@@ -298,12 +298,11 @@ fn lattices_that_do_not_fit_at_the_start_are_warned_of() {
         sim.run(|sim| sim.clock().step < 2).expect("a run");
         sim.warnings().iter().filter(|warning| warning.contains("do not fit")).cloned().collect::<Vec<_>>()
     };
-    // The lines of the lattice of the water are multiples of 0.02 m.
+    // The lattice of the water has lines at multiples of 0.02 m.
     let warnings = float(0.151, "lattice: Regular,");
     assert!(warnings.len() == 1 && warnings[0].contains("`water` and `box`"), "{warnings:?}");
-    assert_eq!(float(0.16, "lattice: Regular,"), Vec::<String>::new());
-    assert_eq!(float(0.151, ""), Vec::<String>::new());
-    assert_eq!(float(0.151, "lattice: Relaxed(seed: 1, iterations: 30),"), Vec::<String>::new());
+    let even = ["", "lattice: Relaxed(seed: 1, iterations: 30),"].map(|lattice| float(0.151, lattice));
+    assert!(even.concat().is_empty() && float(0.16, "lattice: Regular,").is_empty(), "{even:?}");
 }
 
 #[test]
