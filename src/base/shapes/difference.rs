@@ -16,13 +16,15 @@ pub(super) struct DifferenceRegion<R: ?Sized> {
     pub axes: usize,
     /// Kept, as every question whether it contains a point needs them.
     bounds: Aabb,
+    hole_bounds: Aabb,
 }
 
 impl<R: Region + ?Sized> DifferenceRegion<R> {
     /// The difference, in two or three dimensions.
     pub fn new(whole: Box<R>, hole: Box<R>, axes: usize) -> Self {
         let bounds = bounds_of(whole.as_ref(), hole.as_ref(), axes);
-        Self { whole, hole, axes, bounds }
+        let hole_bounds = hole.bounds();
+        Self { whole, hole, axes, bounds, hole_bounds }
     }
 
     /// Whether the hole, extended by `margin` \[m\], is certainly inside the whole.
@@ -33,7 +35,10 @@ impl<R: Region + ?Sized> DifferenceRegion<R> {
 
 impl<R: Region + ?Sized> Region for DifferenceRegion<R> {
     fn distance(&self, point: DVec3) -> f64 {
-        self.whole.distance(point).max(-self.hole.distance(point))
+        let whole = self.whole.distance(point);
+        // The distance from a mesh takes long.
+        let to_hole = self.hole_bounds.gap(point);
+        if to_hole > 0.0 && to_hole >= -whole { whole } else { whole.max(-self.hole.distance(point)) }
     }
 
     fn clearance(&self, point: DVec3) -> f64 {

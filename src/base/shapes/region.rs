@@ -68,6 +68,12 @@ impl Aabb {
         self.min.cmple(other.max).all() && other.min.cmple(self.max).all()
     }
 
+    /// The largest distance of a point outside from the planes of the faces that it is in front of \[m\], no
+    /// more than that from the box; zero or less for one inside.
+    pub(super) fn gap(&self, point: DVec3) -> f64 {
+        (self.min - point).max(point - self.max).max_element()
+    }
+
     /// The eight corners \[m\].
     pub(super) fn corners(&self) -> [DVec3; 8] {
         std::array::from_fn(|n| {
