@@ -67,7 +67,8 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     let pressures = rest::pressures(given.collect(), common.support, sim)?;
     bodies.fluid = bodies.groups.iter().map(|group| group.rows.len()).sum();
     bodies.add_walls(&walls, sim);
-    bodies.add_moved(&moved, has_suction(sim), &common, sim)?;
+    let suction = has_suction(sim);
+    bodies.add_moved(&moved, suction, &common, sim)?;
     let short = systems::short_phases(&bodies.groups, sim);
     bodies.groups.iter_mut().for_each(|group| group.short = short.contains(&group.phase));
     sim.sub_cycle(short);
@@ -164,7 +165,7 @@ impl Bodies {
         moved: &[BodyId],
         suction: bool,
         common: &Common,
-        sim: &SimBuilder<'_>,
+        sim: &mut SimBuilder<'_>,
     ) -> Result<(), SetupError> {
         let velocity = DVec3::ZERO;
         for &id in moved {
@@ -174,7 +175,8 @@ impl Bodies {
                 Role::Boundary(BoundarySurface { no_slip: true, suction, velocity, moved: true, falls });
             let first = self.add(body, role);
             let thickness = Thickness::of(body, common.support, &common.periodic)?;
-            if thickness.thin(1).is_some() {
+            if let Some(thin) = thickness.thin(1) {
+                let stirs = checks::thin_part_stirs(body, &thin, common.spacing);
                 let copies = [first, self.add(body, role)];
                 let thickness = if common.periodic.any() {
                     Thickness::of(body, common.support, &Periodic::NONE)?
@@ -182,6 +184,7 @@ impl Bodies {
                     thickness
                 };
                 self.thin.push(ThinBody::new(body, copies, thickness, common.plane));
+                stirs.into_iter().for_each(|warning| sim.warn(warning));
             }
         }
         Ok(())
