@@ -135,13 +135,20 @@ fn is_of_sound(flow: &str, warning: &str) -> bool {
     flow == "abrasive_flow" && warning.contains("Mach number")
 }
 
+/// Whether it says that a plate is too thin for its fluid, as it is in these variants alone.
+fn is_of_coarseness(flow: &str, warning: &str) -> bool {
+    ["dam_break_obstacle", "elastic_gate", "water_on_plate"].contains(&flow)
+        && warning.contains("it stirs fluid at rest")
+}
+
 #[test]
 fn coarse_variants_of_shipped_flows_give_no_warnings() {
     let mut told = Vec::new();
     for (flow, set) in COARSE {
         match warnings_of(&standard_plugins(), flow, set, steps(set)) {
             Ok(warnings) => {
-                let others = warnings.into_iter().filter(|text| !is_of_sound(flow, text));
+                let expected = |text: &String| is_of_sound(flow, text) || is_of_coarseness(flow, text);
+                let others = warnings.into_iter().filter(|text| !expected(text));
                 told.extend(others.map(|text| format!("{flow}: {text}")));
             }
             Err(error) => told.push(format!("{flow}: {error}")),
