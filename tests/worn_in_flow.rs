@@ -16,7 +16,7 @@ fn channel(pressure: f64, body: &str, shape: &str, factor: f64) -> Simulation {
             materials: {{"water": Fluid(density: 1000, sound_speed: 20, viscosity: 0.001), "jelly": NeoHookean(density: 1200, young: 1e2, poisson: 0.3),
                          "rubber": NeoHookean(density: 1200, young: 1e6, poisson: 0.3)}},
             bodies: [(name: "water", material: "water", shape: Difference(Box(min: (0, 0), max: (0.02, 0.02)), {shape}), spacing: 1e-3,
-                      formulation: Fluid(pressure: {pressure:?}), plugins: [density_diffusion()]),
+                      lattice: Regular, formulation: Fluid(pressure: {pressure:?}), plugins: [density_diffusion()]),
                      {body},
                      (name: "floor", material: "none", shape: Box(min: (0, -0.004), max: (0.02, 0)), spacing: 1e-3, formulation: Wall(suction: true)),
                      (name: "top", material: "none", shape: Box(min: (0, 0.02), max: (0.02, 0.024)), spacing: 1e-3, formulation: Wall(suction: true))],
