@@ -3,16 +3,14 @@
 //! What a fluid meets are the particles. Where a face does not lie between two layers of a lattice, the flow
 //! sees it up to half a spacing elsewhere; oblique and curved faces are stairs, which brake it.
 
-use super::fill::Filling;
+use super::cavity::MISFIT;
+use super::fill::{Filling, is_uniform};
 use super::lattice::Lattice;
 use super::region::Region;
 use super::rings::Rings;
 use super::shape::Shape;
 use crate::space::Vec3;
 
-/// Distance of a face from the nearest faces of cells, over the size of a cell, up to which the lattice fits:
-/// that of the cavities of walls ([`super::cavity`]).
-const MISFIT: f64 = 0.03;
 /// Components of directions below this share of the largest are round-off.
 const SAME: f64 = 1e-9;
 
@@ -31,10 +29,12 @@ impl Filling<'_> {
         match shape {
             // The lattice moves with the shape.
             Shape::Translate { shape, .. } | Shape::Rotate { shape, .. } => return self.fitting(shape),
-            Shape::Scale { shape, by, .. } if by.0.x == by.0.y && by.0.x > 0.0 => {
+            Shape::Scale { shape, by, .. } if is_uniform(shape, by.0, self.dimension) && by.0.x > 0.0 => {
                 return Filling { spacing: self.spacing / by.0.x, ..*self }.fitting(shape);
             }
             Shape::Points { .. } => return Lattice::Regular,
+            // Its file need not be read for that.
+            Shape::Mesh { .. } => return Lattice::body_fitted(),
             _ => {}
         }
         // What is wrong with the shape is found when it is filled.
@@ -182,6 +182,19 @@ mod tests {
             chosen("Difference(Sphere(center: (0, 0), radius: 2), Sphere(center: (0, 0), radius: 1))", true),
             Lattice::Concentric
         );
+        let column = "Cylinder(from: (0, 0, 0), to: (0, 0, 1), radius: 1)";
+        let folder = Path::new(".");
+        let filling = Filling {
+            lattice: Lattice::Automatic,
+            spacing: 0.1,
+            dimension: Dimension::Three,
+            folder,
+            limit: 1_000_000,
+            is_wall: false,
+        };
+        let of =
+            |by: &str| filling.beside_fluid(&shape(&format!("Scale(shape: {column}, by: {by})"))).lattice;
+        assert_eq!([of("(2, 2, 2)"), of("(1, 1, 2)")], [Lattice::Concentric, Lattice::body_fitted()]);
         assert_eq!(chosen(TANK, true), Lattice::Regular);
         assert_eq!(chosen(TANK, false), Lattice::body_fitted());
     }

@@ -10,7 +10,7 @@ use super::region::Aabb;
 const SAME: f64 = 1e-6;
 /// Tolerated distance of cell faces from the face of the cavity, over the size of a cell; its error of the
 /// pressure on a floor is 2 %.
-const MISFIT: f64 = 0.03;
+pub(super) const MISFIT: f64 = 0.03;
 
 /// The box that the cells of a wall divide evenly, where its cavities have these `faces` \[m\]. Along each
 /// axis it extends between the outermost faces inside the wall; from a single face in whole spacings; and

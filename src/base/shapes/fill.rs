@@ -194,6 +194,6 @@ impl Filling<'_> {
 }
 
 /// Whether a shape is filled before it is scaled: particle files always, others for uniform scaling.
-fn is_uniform(shape: &Shape, by: DVec3, dimension: Dimension) -> bool {
+pub(super) fn is_uniform(shape: &Shape, by: DVec3, dimension: Dimension) -> bool {
     matches!(shape, Shape::Points { .. }) || (by.x == by.y && (dimension == Dimension::Two || by.y == by.z))
 }

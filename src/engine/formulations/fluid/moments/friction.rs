@@ -56,8 +56,11 @@ impl FrictionMoments {
         let clusters = BodyClusters { cloud, group, near };
         self.forces.set(clusters, |k| [moments[k].first]);
         self.forces.add(clusters, total, parts, FRICTION);
+        if near.is_soft {
+            return;
+        }
         let lost = self.forces.lost();
-        if !near.is_soft && lost != DVec3::ZERO {
+        if lost != DVec3::ZERO {
             let mut body = WholeBody::new(cloud, group);
             body.turn(lost);
             body.for_each_force(cloud, group, |k, force| {
