@@ -175,7 +175,7 @@ impl Bodies {
                 Role::Boundary(BoundarySurface { no_slip: true, suction, velocity, moved: true, falls });
             let first = self.add(body, role);
             let thickness = Thickness::of(body, common.support, &common.periodic)?;
-            if let Some(thin) = thickness.thin(1) {
+            if let Some(thin) = thickness.sheet() {
                 let stirs = checks::thin_part_stirs(body, &thin, common.spacing);
                 let copies = [first, self.add(body, role)];
                 let thickness = if common.periodic.any() {

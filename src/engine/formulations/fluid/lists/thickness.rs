@@ -1,5 +1,8 @@
 //! Thickness of bodies beside a fluid.
 
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
@@ -9,9 +12,12 @@ use crate::plugin::{BodyPlan, SetupError};
 
 /// Part of the particles of a body that may sit where it is thinner than the support: sharp edges have some.
 const THIN_SHARE: f64 = 0.05;
-/// Share of the most neighbours within half of the support that a particle has in the middle of a ball which
-/// lies inside of the body.
-const FULL: f64 = 0.9;
+/// Distance within which the neighbours of a particle tell whether it is an outermost one, over the spacing.
+const BESIDE: f64 = 1.6;
+/// Cosine of the angle from the outward direction within which an outermost particle has no such neighbour.
+const OUTWARD: f64 = 0.5;
+/// Depth of a part that has two sides, beyond where the body is thick, over the support.
+const EDGES: f64 = 1.5;
 
 /// Where a body is thinner than the support.
 pub struct Thin {
@@ -27,6 +33,7 @@ pub struct Thin {
 pub struct Thickness {
     positions: Vec<DVec3>,
     spacing: f64,
+    periodic: Periodic,
     /// Support radius of the fluid, m.
     pub support: f64,
     /// Neighbours within the support.
@@ -62,32 +69,50 @@ impl Thickness {
             high - low + spacing
         };
         let values = (0..positions.len()).into_par_iter().map(thickness).collect();
-        Ok(Self { positions, spacing, support, neighbors, values })
+        Ok(Self { positions, spacing, periodic: *periodic, support, neighbors, values })
     }
 
-    /// Where the fluid sees through the body; none where that is but its edges, no deeper than that many
+    /// Where the fluid would see through a wall; none where that is but its edges, no deeper than that many
     /// supports.
-    pub fn thin(&self, edges: usize) -> Option<Thin> {
+    pub fn thin(&self, edges: f64) -> Option<Thin> {
         let thin = || (0..self.positions.len()).filter(|&i| self.is_thin(i));
-        let thinnest = thin().min_by(|&a, &b| self.values[a].total_cmp(&self.values[b]))?;
         let is_widespread = thin().count() as f64 > THIN_SHARE * self.positions.len() as f64;
-        let found = Thin { thickness: self.values[thinnest], at: self.positions[thinnest], is_widespread };
-        (is_widespread || self.has_fins(edges)).then_some(found)
+        let found = Thin { is_widespread, ..self.thinnest(thin())? };
+        (is_widespread || self.has_fins(&self.thin_parts(), edges)).then_some(found)
     }
 
-    /// Whether a thin part ends farther from the thick part than that many supports: one is that of a fin or
-    /// an edge below some 40 degrees, two that of a fin or an edge below 20.
-    fn has_fins(&self, supports: usize) -> bool {
-        let mut is_known: Vec<bool> = self.thin_parts().iter().map(|is_thin| !is_thin).collect();
-        let mut front: Vec<usize> = (0..is_known.len()).filter(|&i| is_known[i]).collect();
-        for _ in 0..supports {
-            let mut next = Vec::new();
-            for &j in front.iter().flat_map(|&i| self.neighbors.row(i)) {
-                if !std::mem::replace(&mut is_known[j as usize], true) {
-                    next.push(j as usize);
+    /// Where the body, or a part of it, is a sheet, whose sides have a pressure of their own each: no ball as
+    /// wide as the support fits, over more than that from where one does. An edge of 25 degrees or more
+    /// is none, however small the body: there is one pressure around its tip, and as that fills little of the
+    /// kernels of the fluid, one that did not see its other side would be drawn to it and leave it as a jet.
+    pub fn sheet(&self) -> Option<Thin> {
+        let parts = self.thin_parts();
+        let found = self.thinnest((0..parts.len()).filter(|&i| parts[i] && self.is_thin(i)))?;
+        self.has_fins(&parts, EDGES).then_some(found)
+    }
+
+    fn thinnest(&self, particles: impl Iterator<Item = usize>) -> Option<Thin> {
+        let thinnest = particles.min_by(|&a, &b| self.values[a].total_cmp(&self.values[b]))?;
+        Some(Thin { thickness: self.values[thinnest], at: self.positions[thinnest], is_widespread: false })
+    }
+
+    /// Whether a thin part ends farther from the thick part than that many supports: 1.5 are those of a fin
+    /// or an edge below some 25 degrees, two those of a fin or an edge below 20.
+    fn has_fins(&self, parts: &[bool], supports: f64) -> bool {
+        let mut is_known = vec![false; parts.len()];
+        let mut waiting: BinaryHeap<_> =
+            (0..parts.len()).filter(|&i| !parts[i]).map(|i| (Reverse(0), i)).collect();
+        while let Some((Reverse(distance), i)) = waiting.pop() {
+            if std::mem::replace(&mut is_known[i], true) {
+                continue;
+            }
+            for j in self.near(i, self.support) {
+                // The bits of numbers above zero rise with them.
+                let farther = f64::from_bits(distance) + self.from(i, j).length();
+                if !is_known[j] && farther < supports * self.support {
+                    waiting.push((Reverse(farther.to_bits()), j));
                 }
             }
-            front = next;
         }
         is_known.contains(&false)
     }
@@ -99,22 +124,38 @@ impl Thickness {
     /// Whether each particle is in a thin part of the body: in no ball as wide as the support that lies
     /// inside of it. Where a fin meets a hull the thickness at a particle would not tell.
     pub fn thin_parts(&self) -> Vec<bool> {
-        let radius = 0.5 * self.support;
-        let near = |i: usize, radius: f64| {
-            let within =
-                move |j: &&u32| (self.positions[**j as usize] - self.positions[i]).length() <= radius;
-            self.neighbors.row(i).iter().filter(within)
-        };
         let particles = (0..self.positions.len()).into_par_iter();
-        let counts: Vec<usize> = particles.map(|i| near(i, radius).count()).collect();
-        let full = FULL * counts.iter().copied().max().unwrap_or(0) as f64;
-        let is_core = |i: usize| !self.is_thin(i) && counts[i] as f64 >= full;
+        let outermost: Vec<bool> = particles.clone().map(|i| self.is_outermost(i)).collect();
+        let radius = 0.5 * self.support;
+        // An outermost particle is half a spacing below the surface, and the middle of the ball up to half a
+        // spacing from a particle.
+        let depth = radius - self.spacing;
+        let is_deep = |i: usize| !outermost[i] && self.near(i, depth).all(|j| !outermost[j]);
+        let is_core: Vec<bool> = particles.map(|i| !self.is_thin(i) && is_deep(i)).collect();
         let mut thin = vec![true; self.positions.len()];
-        for i in (0..thin.len()).filter(|&i| is_core(i)) {
+        for i in (0..thin.len()).filter(|&i| is_core[i]) {
             thin[i] = false;
-            near(i, radius + 0.5 * self.spacing).for_each(|&j| thin[j as usize] = false);
+            self.near(i, radius + 0.5 * self.spacing).for_each(|j| thin[j] = false);
         }
         thin
+    }
+
+    /// Whether a particle has no neighbour beside it in the direction away from all of them.
+    fn is_outermost(&self, i: usize) -> bool {
+        let beside = || self.near(i, BESIDE * self.spacing).map(|j| self.from(i, j));
+        let outward = -beside().sum::<DVec3>().normalize_or_zero();
+        outward != DVec3::ZERO && beside().all(|x| x.dot(outward) < OUTWARD * x.length())
+    }
+
+    /// Neighbours within a radius up to the support, but for the particle itself.
+    fn near(&self, i: usize, radius: f64) -> impl Iterator<Item = usize> + '_ {
+        let others = self.neighbors.row(i).iter().map(|&j| j as usize).filter(move |&j| j != i);
+        others.filter(move |&j| self.from(i, j).length() < radius)
+    }
+
+    /// From one particle to another, m.
+    fn from(&self, i: usize, j: usize) -> DVec3 {
+        self.periodic.minimal_image(self.positions[j] - self.positions[i])
     }
 }
 
@@ -132,24 +173,31 @@ mod tests {
     use crate::formulations::fluid::tests::simulation;
     use crate::world::{BodyId, ReferencePosition};
 
-    /// A hull with a keel of 4 particles, or a wedge, beside a fluid of a support of 5.2 of their spacings.
+    /// A body beside a fluid of a support of 5.2 of its spacings.
     fn of(shape: &str) -> Thickness {
+        beside(shape, "Regular", 5.2)
+    }
+
+    /// A body in that lattice beside a fluid of that support, over its spacing.
+    fn beside(shape: &str, lattice: &str, support: f64) -> Thickness {
         let sim = simulation(&format!(
             r#"(dimension: Two, materials: {{"wood": NeoHookean(density: 500.0, young: 1.0e6, poisson: 0.3)}},
-                bodies: [(name: "boat", material: "wood", spacing: 1.0, formulation: TotalLagrangian, shape: {shape})],
+                bodies: [(name: "boat", material: "wood", spacing: 1.0, formulation: TotalLagrangian, shape: {shape}, lattice: {lattice})],
                 time: (end: 1.0))"#
         ));
         let (view, rows) = sim.world().body_view(BodyId(0));
         let places = view.read::<ReferencePosition>().expect("places");
         let positions = places[rows].iter().map(|x| x.0).collect();
-        Thickness::at(positions, 1.0, 5.2, &Periodic::NONE).expect("neighbours")
+        Thickness::at(positions, 1.0, support, &Periodic::NONE).expect("neighbours")
+    }
+
+    /// A hull with a keel of 4 particles.
+    fn keel(length: f64) -> String {
+        format!("Union([Box(min: (-24, 0), max: (24, 16)), Box(min: (-2, {}), max: (2, 0))])", -length)
     }
 
     #[test]
     fn a_keel_is_thin_and_its_hull_is_not() {
-        let keel = |length: f64| {
-            format!("Union([Box(min: (-24, 0), max: (24, 16)), Box(min: (-2, {}), max: (2, 0))])", -length)
-        };
         let boat = of(&keel(18.0));
         let parts = boat.thin_parts();
         for (place, is_thin) in boat.positions.iter().zip(parts) {
@@ -159,14 +207,40 @@ mod tests {
             }
         }
         assert!(
-            boat.thin(1).is_some_and(|thin| (thin.thickness - 4.0).abs() < 0.5),
+            boat.thin(2.0).is_some_and(|thin| (thin.thickness - 4.0).abs() < 0.5),
             "a keel of 3.5 supports"
         );
-        assert!(of("Box(min: (-24, 0), max: (24, 16))").thin(1).is_none(), "a hull alone");
+        assert!(of("Box(min: (-24, 0), max: (24, 16))").thin(2.0).is_none(), "a hull alone");
         assert!(
-            of("Polygon(points: [(0, 0), (40, 23), (-40, 23)])").thin(1).is_none(),
+            of("Polygon(points: [(0, 0), (40, 23), (-40, 23)])").thin(2.0).is_none(),
             "a wedge of 120 degrees"
         );
-        assert!(of("Polygon(points: [(0, 0), (14, 24), (-14, 24)])").thin(1).is_none(), "one of 60 degrees");
+        assert!(
+            of("Polygon(points: [(0, 0), (14, 24), (-14, 24)])").thin(2.0).is_none(),
+            "one of 60 degrees"
+        );
+    }
+
+    #[test]
+    fn keels_and_thin_bodies_are_sheets_and_edges_are_not() {
+        assert!([18.0, 14.0, 10.0].iter().all(|&length| of(&keel(length)).sheet().is_some()), "keels");
+        assert!(of("Box(min: (0, 0), max: (24, 4))").sheet().is_some(), "a plate");
+        assert!(of("Box(min: (0, 0), max: (3, 3))").sheet().is_some(), "a rod");
+        let is_sheet = |angle: f64, length: f64, lattice: &str, support: f64| {
+            let half = length * (0.5 * angle).to_radians().tan();
+            let wedge =
+                format!("Polygon(points: [(0, 0), ({length:?}, {half:?}), ({length:?}, {:?})])", -half);
+            beside(&wedge, lattice, support).sheet().is_some()
+        };
+        for (length, support) in [(60.0, 5.2), (25.0, 5.2), (60.0, 2.6)] {
+            for lattice in ["Regular", "BodyFitted()"] {
+                let is_sheet = |angle| is_sheet(angle, length, lattice, support);
+                assert!(support < 5.0 || is_sheet(20.0), "{length} {support} {lattice}");
+                assert!(
+                    [30.0, 45.0, 60.0, 80.0, 100.0].iter().all(|&angle| !is_sheet(angle)),
+                    "{length} {support} {lattice}"
+                );
+            }
+        }
     }
 }
