@@ -214,6 +214,7 @@ fn cloud(
         groups,
         fluid,
         kernel,
+        pressure_factor: 1.0,
         viscosities,
         plane,
         periods: Periods::new(&periodic),

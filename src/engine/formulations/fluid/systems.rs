@@ -2,11 +2,11 @@
 
 use crate::formulations::fluid::cloud::{
     ACCOUNTS, COMPRESSION_RATES, EDGES, ENDS, FLOW_LOADS, FLOW_RECORDS, GAP_FORCES, Group, ListPosition,
-    NEIGHBORS, Neighbors, REPELLED, Role, SPINS,
+    NEIGHBORS, Neighbors, PRESSURE_FACTOR, REPELLED, Role, SPINS,
 };
 use crate::formulations::fluid::coupling::add_force_on_bodies;
 use crate::formulations::fluid::density::{
-    ApplyState, Continuity, DensityShift, DisplacementAccount, open_gravity,
+    ApplyState, Continuity, DensityShift, DisplacementAccount, PressureFactor, open_gravity,
 };
 use crate::formulations::fluid::moments::{SurfaceMoments, SurfaceStretching};
 use crate::formulations::fluid::passes::{Compression, FLUID_FORCE, FlowForce, reads_flow};
@@ -95,6 +95,14 @@ pub fn add(
             .reads_own_packed()
             .touches_packed(COMPRESSION_RATES, Mode::Writes)
             .after(NEIGHBORS),
+    );
+    sim.add_system(
+        System::new(Stage::Neighbors, "pressure_factor", PressureFactor::default())
+            .on_phases([fluid])
+            .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
+            .reads_own_packed()
+            .touches_packed(PRESSURE_FACTOR, Mode::Writes)
+            .after(COMPRESSION),
     );
     if !boundaries.is_empty() {
         let system = System::new(Stage::Neighbors, "fluid_repulsion", repulsion)
@@ -194,6 +202,7 @@ fn add_state(sim: &mut SimBuilder<'_>, fluid: PhaseId, account: Option<String>) 
         System::new(Stage::Gradients, "fluid_continuity", continuity)
             .on_phases([fluid])
             .touches_packed(COMPRESSION_RATES, Mode::Reads)
+            .touches_packed(PRESSURE_FACTOR, Mode::Reads)
             .reads_own_packed()
             .reads::<DensityRate>()
             .reads::<Mass>()

@@ -48,6 +48,9 @@ pub struct FlowCloud {
     pub fluid: usize,
     /// Kernel.
     pub kernel: FluidKernel,
+    /// What multiplies pressures in sums over pairs, and rates of compression
+    /// (`density::pressure_factor`).
+    pub(in crate::formulations::fluid) pressure_factor: f64,
     pub(in crate::formulations::fluid) viscosities: Viscosities,
     pub(in crate::formulations::fluid) plane: bool,
     pub(in crate::formulations::fluid) periods: Periods,
@@ -95,6 +98,11 @@ impl FlowCloud {
     /// Rows of each fluid.
     pub(in crate::formulations::fluid) fn fluids(&self) -> impl Iterator<Item = Range<usize>> + Clone {
         self.groups.iter().map(|group| group.cloud.clone()).take_while(|rows| rows.end <= self.fluid)
+    }
+
+    /// Pressure of the particle in that row, Pa.
+    pub fn pressure(&self, row: usize) -> f64 {
+        self.records[row].pressure() / self.pressure_factor
     }
 
     /// Arithmetic of the sums over neighbours.

@@ -55,7 +55,8 @@ pub use repelled::{LoadCarrier, Repelled, Shares};
 pub use row_pass::{NearPairs, RowPass};
 pub use rows::RowSums;
 pub use shared::{
-    COMPRESSION_RATES, EDGES, ENDS, FLOW_LOADS, FLOW_RECORDS, GAP_FORCES, PLACES_BEFORE, REPELLED, SPINS,
+    COMPRESSION_RATES, EDGES, ENDS, FLOW_LOADS, FLOW_RECORDS, GAP_FORCES, PLACES_BEFORE, PRESSURE_FACTOR,
+    REPELLED, SPINS,
 };
 pub use surroundings::smallest_eigenvalue;
 pub use viscosities::{NONE, PLAIN, Viscosities, WITH_SPIN, is_viscous};

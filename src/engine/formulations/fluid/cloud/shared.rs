@@ -6,6 +6,8 @@ use crate::schedule::Shareable;
 /// Position, volume, velocity and pressure of every particle of a flow
 /// ([`FlowParticle`](crate::formulations::fluid::FlowParticle)).
 pub const FLOW_RECORDS: &str = "flow_records";
+/// Factor of pressures in sums over pairs.
+pub const PRESSURE_FACTOR: &str = "pressure_factor";
 /// Rates of compression of fluid particles.
 pub const COMPRESSION_RATES: &str = "compression_rates";
 /// Fluid particles that boundaries repel.
@@ -27,6 +29,7 @@ impl Shareable for FlowCloud {
     const ROWS: &'static [&'static str] = &[
         FLOW_RECORDS,
         COMPRESSION_RATES,
+        PRESSURE_FACTOR,
         REPELLED,
         EDGES,
         ENDS,

@@ -70,7 +70,7 @@ impl Run for Continuity {
             return Ok(());
         }
         let cloud = step.resources.get::<FlowCloud>();
-        let by_terms = self.account.is_some();
+        let (factor, by_terms) = (cloud.pressure_factor, self.account.is_some());
         for group in &cloud.groups {
             let Some(state) = group.fluid() else { break };
             let view = step.world.phase(group.phase);
@@ -90,7 +90,16 @@ impl Run for Continuity {
                 &removed[rows],
             );
             let change = for_each_own_block(slices, &mut self.sums, &|first, rows: Rows<'_>| {
-                run_hot(AdvanceDensity { state, dt, by_terms, shift: due, of_boundaries, first, rows })
+                run_hot(AdvanceDensity {
+                    state,
+                    dt,
+                    factor,
+                    by_terms,
+                    shift: due,
+                    of_boundaries,
+                    first,
+                    rows,
+                })
             });
             if change.broken > 0 {
                 return Err(step.unstable("the density must be positive", group.body, change.broken - 1));
@@ -124,6 +133,8 @@ type Rows<'a> = (&'a mut [Density], &'a [f64], &'a [DensityRate], &'a [Mass], &'
 struct AdvanceDensity<'a> {
     state: &'a FluidState,
     dt: f64,
+    /// What multiplies rates of compression.
+    factor: f64,
     by_terms: bool,
     shift: Option<&'a [DensityShift]>,
     /// The part of the rate of compression that the pressure of boundaries answers for.
@@ -137,7 +148,7 @@ impl HotLoop for AdvanceDensity<'_> {
 
     #[inline(always)]
     fn run<A: FourLanes>(self, a: A) -> Change {
-        let Self { state, dt, by_terms, shift, of_boundaries, first, rows } = self;
+        let Self { state, dt, factor, by_terms, shift, of_boundaries, first, rows } = self;
         let (density, compression, rate, mass, removed) = rows;
         let (mut change, mut least, mut sum) = (Change::default(), f64::INFINITY, 0.0);
         let count = density.len();
@@ -155,7 +166,7 @@ impl HotLoop for AdvanceDensity<'_> {
             // second order in the step.
             let by_terms = if by_terms { 0.5 * dt * rate[k].0 } else { 0.0 };
             let shift = shift.map_or(0.0, |shift| 0.5 * shift[first + k].0);
-            let half = -0.5 * dt * compression[k];
+            let half = -0.5 * dt * (factor * compression[k]);
             let before = rho.0 + by_terms + shift;
             let after = a.scalar_mul_add(before, half, before) / (1.0 - half);
             if shift != 0.0 {
@@ -172,7 +183,8 @@ impl HotLoop for AdvanceDensity<'_> {
             if of_boundaries != 0.0 {
                 // The mean of the pressures of the two kicks, which do the work.
                 let volume = mass[k].0 / (before * after).sqrt();
-                change.by_boundaries += state.mean_pressure(rho.0, end) * volume * of_boundaries * dt;
+                change.by_boundaries +=
+                    state.mean_pressure(rho.0, end) * volume * (factor * of_boundaries) * dt;
             }
             rho.0 = end;
             least = if rho.0 < least { rho.0 } else { least };

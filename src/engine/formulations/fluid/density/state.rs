@@ -56,9 +56,10 @@ type RowsAndPacked<'a> = (Rows<'a>, Option<&'a mut [Packed]>);
 impl Run for ApplyState {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let mut cloud = step.resources.get_mut::<FlowCloud>();
-        let FlowCloud { groups, records, kernel, viscosities, blocks, .. } = &mut *cloud;
+        let FlowCloud { groups, records, kernel, pressure_factor, viscosities, blocks, .. } = &mut *cloud;
         let h = kernel.smoothing_length();
         let viscous = VISCOUS / viscosities.factor() * h * h;
+        let factor = *pressure_factor;
         let account = step.ledger.account("compression", AccountKind::Stored);
         self.mach.resize(groups.len(), Mach::default());
         let fluids = groups.iter().filter_map(Group::fluid);
@@ -80,7 +81,7 @@ impl Run for ApplyState {
             );
             let packed = blocks.as_mut().map(|blocks| &mut blocks.packed[group.cloud.clone()]);
             let sum = for_each_own_block((slices, packed), &mut self.sums, &|_, rows: RowsAndPacked<'_>| {
-                run_hot(Apply { state, frame, rows: rows.0, packed: rows.1 })
+                run_hot(Apply { state, factor, frame, rows: rows.0, packed: rows.1 })
             });
             step.ledger.set(account, group.body, sum.energy);
             let speed =
@@ -114,6 +115,8 @@ impl Run for ApplyState {
 /// The states of a block.
 struct Apply<'a> {
     state: &'a FluidState,
+    /// What multiplies pressures in sums over pairs.
+    factor: f64,
     /// Velocity that speeds are measured against, m/s.
     frame: DVec3,
     rows: Rows<'a>,
@@ -140,7 +143,7 @@ impl HotLoop for Apply<'_> {
             record.place.0[3] = if removed[k] == Removed::NO { volume } else { 0.0 };
             let [x, y, z, _] = record.motion.0;
             let (x, y, z) = (x - self.frame.x, y - self.frame.y, z - self.frame.z);
-            record.motion.0[3] = p;
+            record.motion.0[3] = self.factor * p;
             sum.energy = a.scalar_mul_add(mass[k].0, eos.energy(rho, rho_0, sound_speed), sum.energy);
             let square = a.scalar_mul_add(x, x, a.scalar_mul_add(y, y, z * z));
             sum.speed_squared = if square > sum.speed_squared { square } else { sum.speed_squared };

@@ -153,14 +153,14 @@ impl OwnFluid<'_> {
         let distance = a.sqrt(dot(a, &pair.x, &pair.x));
         let value = a.mul(self.cloud.kernel.values(a, distance), a.same(other.volume));
         // rho = rho_0 + p / c_0^2 to first order in the compression.
-        let p = f64::from(other.pressure);
-        let density = (state.density + p / (state.sound_speed * state.sound_speed)) as f32;
+        let (p, factor) = (f64::from(other.pressure), self.cloud.pressure_factor);
+        let density = (state.density + p / (factor * state.sound_speed * state.sound_speed)) as f32;
         let weighed = a.mul(value, a.same(density));
         sums.total = a.add(sums.total, value);
         sums.pressure = a.mul_add(value, a.same(other.pressure), sums.pressure);
         if let Some(load) = self.cloud.loads.get(j) {
             for axis in 0..A::AXES {
-                let along = a.mul(pair.x[axis], a.same(-load[axis] as f32));
+                let along = a.mul(pair.x[axis], a.same((-factor * load[axis]) as f32));
                 sums.pressure = a.mul_add(weighed, along, sums.pressure);
             }
         }

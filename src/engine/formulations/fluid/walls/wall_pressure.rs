@@ -187,14 +187,15 @@ impl<const D: usize> SumsBeside<D> {
         let volume = a.mul(four.volume, MASKS[chunk.len()]);
         let value = a.mul(cloud.kernel.values(a, distance), volume);
         // rho = rho_0 + p / c_0^2 to first order in the compression.
-        let per_pressure = 1.0 / (state.sound_speed * state.sound_speed);
+        let factor = cloud.pressure_factor;
+        let per_pressure = 1.0 / (factor * state.sound_speed * state.sound_speed);
         let density = a.scale_add(per_pressure, four.pressure, Lanes4::splat(state.density));
         self.total = a.add(self.total, value);
         self.pressure = a.mul_add(value, four.pressure, self.pressure);
         let weighed = a.mul(value, density);
         if !cloud.loads.is_empty() {
             let along = along_loads::<A, D>(a, cloud, rows, &four.x);
-            self.pressure = a.sub(self.pressure, a.mul(weighed, along));
+            self.pressure = a.sub(self.pressure, a.scale(factor, a.mul(weighed, along)));
         }
         for axis in 0..D {
             self.moment[axis] = a.mul_add(weighed, four.x[axis], self.moment[axis]);

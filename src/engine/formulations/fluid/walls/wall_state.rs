@@ -50,11 +50,11 @@ impl Run for WallState {
         if let Some(bodies) = step.resources.try_get::<RigidBodies>() {
             self.motions.follow(&bodies, elapsed);
         }
-        let FlowCloud { groups, records, fluid, .. } = &mut *cloud;
+        let FlowCloud { groups, records, fluid, pressure_factor, .. } = &mut *cloud;
         for group in groups {
             let Role::Boundary(surface) = &group.role else { continue };
             let beside = &self.beside[group.cloud.start - *fluid..group.cloud.end - *fluid];
-            let boundary = BoundaryStep { surface, gravity: self.gravity, elapsed };
+            let boundary = BoundaryStep { surface, gravity: self.gravity, factor: *pressure_factor, elapsed };
             if surface.moved {
                 let known = self.motions.of(group.body);
                 let rows = (&mut records[group.cloud.clone()], beside);
@@ -111,23 +111,25 @@ fn pack(cloud: &mut FlowCloud) {
 struct BoundaryStep<'a> {
     surface: &'a BoundarySurface,
     gravity: DVec3,
+    /// What multiplies pressures in sums over pairs.
+    factor: f64,
     /// Time since the velocities in the step before, s.
     elapsed: f64,
 }
 
 impl BoundaryStep<'_> {
     fn apply(&self, (records, pressure, previous, beside): Rows<'_>) {
-        let Self { surface, gravity, elapsed } = *self;
+        let Self { surface, gravity, factor, elapsed } = *self;
         for (k, record) in records.iter_mut().enumerate() {
             let v = record.velocity();
             let acceleration = if elapsed > 0.0 { (v - previous[k].0) / elapsed } else { DVec3::ZERO };
             previous[k] = PreviousVelocity(v);
             let fluid = &beside[k];
-            let mut p = fluid.pressure - (gravity - acceleration).dot(fluid.moment);
+            let mut p = fluid.pressure - factor * (gravity - acceleration).dot(fluid.moment);
             if !surface.suction {
                 p = p.max(0.0);
             }
-            pressure[k] = Pressure(p);
+            pressure[k] = Pressure(p / factor);
             // Halfway between this velocity and that of the fluid lies the velocity of the surface.
             let seen = if surface.no_slip { v + 2.0 * surface.velocity - fluid.velocity } else { v };
             record.motion = Lanes4::new(seen, p);
@@ -138,11 +140,11 @@ impl BoundaryStep<'_> {
     /// step later, as a mass that is added explicitly, and a light body would not stand it. The resulting
     /// error falls with the spacing. That of a rigid body is `known`, from the steps before (`own_motion`).
     fn apply_to_solid(&self, known: Option<RigidAcceleration>, (records, beside): MovedRows<'_>) {
-        let Self { surface, gravity, .. } = *self;
+        let Self { surface, gravity, factor, .. } = *self;
         for (record, fluid) in records.iter_mut().zip(beside) {
             let v = record.velocity();
             let acceleration = known.map_or(DVec3::ZERO, |known| known.at(record.position()));
-            let mut p = fluid.pressure - (gravity - acceleration).dot(fluid.moment);
+            let mut p = fluid.pressure - factor * (gravity - acceleration).dot(fluid.moment);
             if !surface.suction {
                 p = p.max(0.0);
             }

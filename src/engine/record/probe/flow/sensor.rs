@@ -115,7 +115,7 @@ impl SensorGauge {
             if x.dot(face.normal) > 0.0 {
                 let weight = record.volume() * cloud.kernel.value(x.length());
                 total += weight;
-                sum += weight * record.pressure();
+                sum += weight * cloud.pressure(i);
                 let field = self.gravity + cloud.load(i) - acceleration;
                 sum -= weight * density(cloud, i) * field.dot(x);
             }
@@ -142,14 +142,14 @@ impl SensorGauge {
             if weight > 0.0 && cloud.row_facing(row, x) == row {
                 let mass = density(cloud, i) * x;
                 total += weight;
-                pressure += weight * (record.pressure() - (self.gravity + cloud.load(i)).dot(mass));
+                pressure += weight * (cloud.pressure(i) - (self.gravity + cloud.load(i)).dot(mass));
                 moment += weight * mass.dot(face.normal);
             }
         }
-        if wall.pressure() == 0.0 || total < MIN_FILLING || moment <= 0.0 {
+        if cloud.pressure(row) == 0.0 || total < MIN_FILLING || moment <= 0.0 {
             return DVec3::ZERO;
         }
-        face.normal * ((wall.pressure() * total - pressure) / moment)
+        face.normal * ((cloud.pressure(row) * total - pressure) / moment)
     }
 }
 
@@ -157,7 +157,7 @@ impl SensorGauge {
 fn density(cloud: &FlowCloud, i: usize) -> f64 {
     let group = cloud.groups.iter().find(|group| group.cloud.contains(&i));
     let state = group.and_then(|group| group.fluid());
-    state.map_or(0.0, |state| state.density + cloud.records()[i].pressure() / state.sound_speed.powi(2))
+    state.map_or(0.0, |state| state.density + cloud.pressure(i) / state.sound_speed.powi(2))
 }
 
 impl<'a> NearFace<'a> {

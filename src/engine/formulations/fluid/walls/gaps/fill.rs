@@ -67,7 +67,7 @@ impl GapRemainder {
             mass += pair.value * density;
             slope += pair.value * density * (gravity + cloud.load(pair.row));
         }
-        let pressure = cloud.records[row as usize].pressure();
+        let pressure = cloud.pressure(row as usize);
         let of_mean = || Self { pressure, slope: slope / total, density: mass / total, way: 0.0 };
         (total > MIN_SHARE).then(of_mean)
     }
@@ -220,7 +220,7 @@ impl Fill {
     pub fn beyond(&self, cloud: &FlowCloud, row: usize, gap: &Gap) -> Option<f64> {
         let way = self.ways[row - cloud.fluid];
         if way != DVec3::ZERO && !is_outside(way, gap.around.toward()) {
-            let pressure = cloud.records[row].pressure();
+            let pressure = cloud.pressure(row);
             return Some(if gap.fall > 0.0 { (pressure - gap.fall).max(0.0) } else { pressure });
         }
         let [total, pressure] = self.beyond[row - cloud.fluid];
