@@ -51,6 +51,7 @@ impl Plugin for BodyForce {
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         let selection = sim.select_at_start(&self.on, "on")?;
         load::require_movable(&selection, sim)?;
+        sim.carry(&selection, [true; 3]);
         load::warn_of_parts(Self::NAME, &self.on, &selection, sim);
         let field = VectorField::new(self.value, sim)?;
         let law = ForcePerMass { field, place: self.place };

@@ -52,6 +52,7 @@ impl Plugin for Fix {
         let held = [Axis::X, Axis::Y, Axis::Z].map(|axis| self.axes.contains(&axis));
         // A prescribed axis has no mobility: with zero velocity nothing ever moves it, and no system has to
         // run.
+        sim.carry(&selection, held);
         let (selection, rigid) = split_rigid(&selection, sim)?;
         for body in rigid {
             let motion = Prescription::rest(Self::NAME);

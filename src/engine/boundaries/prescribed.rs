@@ -47,6 +47,7 @@ pub(super) fn prescribe(
     selection: &Selection,
     sim: &mut SimBuilder<'_>,
 ) -> Result<(), SetupError> {
+    sim.carry(selection, field.axes());
     let (selection, rigid) = split_rigid(selection, sim)?;
     let time_increment = 1e-6 * sim.scene().time.end;
     for body in rigid {

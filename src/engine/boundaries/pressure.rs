@@ -51,6 +51,7 @@ impl Plugin for PressureLoad {
             normal_of(&self.on)?;
         }
         let selection = sim.select(&Select { surface: None, ..self.on.clone() }, "on")?;
+        sim.carry(&selection, [true; 3]);
         if let Some(skins) = skins_of(&self.on, &selection, sim)? {
             let make = || LoadKind::Pressure(self.value.clone());
             let surface = LoadedSurface { select: &self.on, area: self.area };

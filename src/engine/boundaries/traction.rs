@@ -47,6 +47,7 @@ impl Plugin for Traction {
         let field = VectorField::new(self.value, sim)?;
         let selection = sim.select_at_start(&Select { surface: None, ..self.on.clone() }, "on")?;
         load::require_movable(&selection, sim)?;
+        sim.carry(&selection, [true; 3]);
         load::warn_of_parts(Self::NAME, &self.on, &selection, sim);
         if let Some(skins) = skins_of(&self.on, &selection, sim)? {
             let make = || LoadKind::Traction(field.clone());

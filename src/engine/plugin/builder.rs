@@ -1,7 +1,7 @@
 //! The interface of a plugin while a simulation is built.
 
 use std::cell::RefCell;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -41,6 +41,8 @@ pub struct SimBuilder<'s> {
     /// Of particles with a prescribed motion the numbers of those who prescribe it, by axis.
     pub(crate) prescribed: BTreeMap<(PhaseId, u32), [Option<usize>; 3]>,
     pub(crate) prescriptions: Vec<Prescription>,
+    /// Bodies that conditions may carry, by the axis along which they do.
+    pub(crate) carried: [BTreeSet<BodyId>; 3],
     /// Bodies that selections hold.
     pub(crate) held: RefCell<Vec<BodyId>>,
     pub(crate) handed: Contributions,
@@ -69,6 +71,7 @@ impl<'s> SimBuilder<'s> {
             references: Vec::new(),
             prescribed: BTreeMap::new(),
             prescriptions: Vec::new(),
+            carried: <[BTreeSet<BodyId>; 3]>::default(),
             held: RefCell::default(),
             handed: Contributions::default(),
             shared: SharedValues::default(),
@@ -284,6 +287,19 @@ impl<'s> SimBuilder<'s> {
         }
         self.prescriptions.push(by);
         Ok(())
+    }
+
+    /// Notes that a condition moves, holds or loads the selected particles along the given axes, and so may
+    /// carry the weight of their bodies.
+    pub fn carry(&mut self, selection: &Selection, axes: [bool; 3]) {
+        for axis in (0..3).filter(|&axis| axes[axis]) {
+            self.carried[axis].extend(selection.parts.iter().map(|(body, _)| *body));
+        }
+    }
+
+    /// Whether a condition may carry a body against this acceleration.
+    pub fn is_carried(&self, body: BodyId, against: DVec3) -> bool {
+        (0..3).any(|axis| against[axis] != 0.0 && self.carried[axis].contains(&body))
     }
 
     /// Tells the user something that is worth looking at; repeated at the end of the run.

@@ -102,7 +102,7 @@ impl Remedies {
             if name.is_some_and(|name| name != body) || self.controlled[group.body.0] {
                 return None;
             }
-            let tension = Tension::of(&cloud.records()[group.cloud.clone()]);
+            let tension = Tension::of(&cloud.records()[group.cloud.clone()], 0.0);
             (tension.share() > 0.0).then(|| {
                 format!(
                     "`{body}` is under tension, down to {}, which causes pairing of particles and voids: `tensile_control()` among its `plugins`, or, in a closed flow, a pressure at the start that keeps it above zero, `Fluid(pressure: ...)`",

@@ -1,5 +1,6 @@
 //! The start of a flow: initial state, checks and notes.
 
+mod carried;
 mod endless;
 mod sound_speed;
 mod spread;

@@ -5,12 +5,13 @@
 //! body, the pressure is continued hydrostatically from neighbouring particles that have one; in fluids
 //! without a free surface, which are beside each other, it is zero at their highest point. Above the level of
 //! the free surface, as in a siphon, it is negative where boundaries have suction, else zero. Fluids that
-//! touch no wall and no body, alone or together, fall freely: their pressure is zero. Gravity along a
-//! periodic axis on which fluids are endless drives them, and causes no pressure.
+//! nothing carries fall freely: their pressure is zero (`carried`). Gravity along a periodic axis on which
+//! fluids are endless drives them, and causes no pressure.
 
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::carried::{Touchable, carried, uncarried};
 use super::endless;
 use super::roofs::Roofed;
 use super::spread::AllFluids;
@@ -19,7 +20,7 @@ use crate::formulations::fluid::walls::has_suction;
 use crate::neighbors::Periodic;
 use crate::plugin::{SetupError, SimBuilder};
 use crate::scene::Expression;
-use crate::shapes::{Region, Site, images_near};
+use crate::shapes::{Region, images_near};
 use crate::world::BodyId;
 
 /// Largest distance of the end of a line from the boundary that ends it, over the spacing.
@@ -69,6 +70,7 @@ pub fn pressures(
         texts.into_iter().for_each(|text| sim.warn(text));
     }
     let held = rest.held(sim);
+    uncarried(rest.gravity, sim).into_iter().for_each(|text| sim.warn(text));
     let least = if has_suction(sim) { f64::NEG_INFINITY } else { 0.0 };
     let pressures = rest.layers.into_iter().zip(found).zip(held).map(|((layer, found), is_held)| {
         let at_rest = |p: Option<f64>| if is_held { p.unwrap_or(0.0).max(least) } else { 0.0 };
@@ -119,30 +121,16 @@ impl RestLines {
         piece.pressed(&self.covers, reach, self.spacing * self.gravity.length(), sim)
     }
 
-    /// Whether each fluid touches a wall or a body, directly or by other fluids; so does one whose extent, or
-    /// that of something in the scene, is not known.
+    /// Whether something carries each fluid; so it does where the extent of one body is not known.
     fn held(&self, sim: &SimBuilder<'_>) -> Vec<bool> {
-        let others = sim.bodies().iter().count() - self.layers.len();
-        let are_known = self.covers.len() == others && self.layers.iter().all(|layer| layer.region.is_some());
-        let reach = TOUCH * self.spacing;
-        let touches = |k: usize, region: &dyn Region| {
-            let is_near = |site: &Site| {
-                self.images(region, site.position, reach).any(|place| region.distance(place) < reach)
-            };
-            sim.body(self.layers[k].id).sites.par_iter().any(is_near)
-        };
-        let by_cover = |k: usize| self.covers.iter().any(|(_, cover)| touches(k, cover.as_ref()));
-        let mut held: Vec<bool> = (0..self.layers.len()).map(|k| !are_known || by_cover(k)).collect();
-        for _ in 1..self.layers.len() {
-            for k in 0..self.layers.len() {
-                let by_fluid = |other: usize| {
-                    let region = self.layers[other].region.as_deref();
-                    other != k && held[other] && region.is_some_and(|region| touches(k, region))
-                };
-                held[k] = held[k] || (0..self.layers.len()).any(by_fluid);
-            }
+        let fluids = self.layers.iter().map(|layer| (layer.id, layer.region.as_deref()));
+        let covers = self.covers.iter().map(|(id, region)| (*id, Some(region.as_ref())));
+        let bodies: Option<Vec<_>> =
+            fluids.chain(covers).map(|(id, region)| Some(Touchable { id, region: region? })).collect();
+        match bodies.filter(|bodies| bodies.len() == sim.bodies().len()) {
+            Some(bodies) => carried(&bodies, self.layers.len(), self.gravity, TOUCH * self.spacing, sim),
+            None => vec![true; self.layers.len()],
         }
-        held
     }
 
     /// Pressure of the particles of a fluid, where a line from them ends at a free surface, Pa.

@@ -236,3 +236,49 @@ fn friction_of_a_liquid_at_rest_is_not_warned_of() {
         sim.warnings().iter().filter(|warning| warning.contains("particles of `oil`")).collect();
     assert!(told.is_empty(), "{told:?}");
 }
+
+/// A container that nothing carries falls with its water; one that stands on something, also by way of a
+/// block, and one that a condition holds or loads along gravity, does not.
+#[test]
+fn water_in_a_container_that_falls_has_no_pressure() {
+    let start = |more: &str, conditions: &str| {
+        let sim = simulation(&format!(
+            r#"(dimension: Two, gravity: (0.0, -9.81),
+                materials: {{"water": Fluid(density: 1000.0, sound_speed: 30.0), "wood": NeoHookean(density: 500.0, young: 1e6, poisson: 0.3)}},
+                bodies: [
+                    (name: "water", material: "water", shape: Box(min: (0, 0), max: (0.4, 0.2)), spacing: {SPACING}, formulation: Fluid),
+                    (name: "flask", material: "wood", spacing: {SPACING}, formulation: Rigid(),
+                     shape: Difference(Box(min: (-0.08, -0.08), max: (0.48, 0.3)), Box(min: (0, 0), max: (0.4, 1)))),
+                    {more}
+                ],
+                conditions: [{conditions}],
+                time: (end: 1.0))"#
+        ));
+        let is_told = sim.warnings().iter().any(|text| text.contains("nothing carries `flask`"));
+        (column::<Pressure>(&sim, 0).iter().map(|p| p.0).fold(0.0, f64::max), is_told)
+    };
+    let floor = |y: f64| {
+        format!(
+            r#"(name: "floor", material: "wall", shape: Box(min: (-1, {}), max: (1, {y})), spacing: {SPACING}, formulation: Wall()),"#,
+            y - 0.06
+        )
+    };
+    let block = r#"(name: "block", material: "wood", shape: Box(min: (0, -0.2), max: (0.2, -0.08)), spacing: 0.02, formulation: TotalLagrangian()),"#;
+    let on = r#"on: Select(body: "flask")"#;
+    let falls = [
+        start("", ""),
+        start(&floor(-0.2), ""),
+        start(block, ""),
+        start("", &format!("Fix({on}, axes: [X])")),
+        start("", &format!("RotationRate({on}, rate: 1.0)")),
+    ];
+    assert_eq!(falls, [true, false, true, true, true].map(|is_told| (0.0, is_told)));
+    let rests = [
+        start(&floor(-0.08), ""),
+        start(&format!("{}{block}", floor(-0.2)), ""),
+        start("", &format!("Fix({on}, axes: [Y])")),
+        start("", &format!("Force({on}, value: (0.0, 1.1e3))")),
+    ];
+    let at_rest = |p: f64| (p - 9810.0 * 0.19).abs() < 1e-3 * 1962.0;
+    assert!(rests.iter().all(|(p, is_told)| at_rest(*p) && !is_told), "{rests:?}");
+}
