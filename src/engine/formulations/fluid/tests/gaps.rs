@@ -164,6 +164,30 @@ fn the_pressure_below_a_dam_ends_where_it_is_dry() {
     assert!((0.3..0.7).contains(&(on_dam.y / all_wet)), "{on_dam}");
 }
 
+/// It falls evenly below the dam, from the water to the dry side: the moment of the uplift about the middle
+/// is `rho g h b^2 / 12`, where a pressure that ends halfway has 1.5 times that.
+#[test]
+fn the_pressure_below_a_dam_falls_evenly() {
+    let mut sim = simulation(
+        r#"(dimension: Two, gravity: (0.0, -9.81),
+            materials: {"water": Fluid(density: 1000.0, sound_speed: 30.0), "stone": NeoHookean(density: 2500.0, young: 1.0e6, poisson: 0.3)},
+            bodies: [
+                (name: "water", material: "water", spacing: 0.02, formulation: Fluid, shape: Box(min: (-0.2, 0), max: (0, 0.2))),
+                (name: "tank", material: "wall", spacing: 0.02, formulation: Wall(),
+                 shape: Union([Box(min: (-0.26, -0.06), max: (0.5, 0)), Box(min: (-0.26, 0), max: (-0.2, 0.3))])),
+                (name: "dam", material: "stone", spacing: 0.02, formulation: Rigid(), shape: Box(min: (0, 0), max: (0.4, 0.3))),
+            ],
+            conditions: [Fix(on: Select(body: "dam"))], time: (end: 0.001))"#,
+    );
+    sim.run(|_| true).expect("a run");
+    let cloud = sim.resources().get::<FlowCloud>();
+    let places = column::<Position>(&sim, 2);
+    let forces = cloud.forces_on(BodyId(2)).expect("a flow");
+    let uplift: f64 = places.iter().zip(forces.iter()).map(|(x, (force, _))| force.y * (x.0.x - 0.2)).sum();
+    let even = -1000.0 * GRAVITY * 0.2 * 0.4 * 0.4 / 12.0;
+    assert!((1.0..1.2).contains(&(uplift / even)), "{uplift} and {even}");
+}
+
 #[test]
 fn a_cube_on_the_floor_has_its_buoyancy_in_space() {
     let mut sim = simulation(

@@ -13,7 +13,11 @@
 
 mod fill;
 
+mod gap;
+
 mod moments;
+
+mod seepage;
 
 mod share;
 

@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-use super::fill::{BoundaryMotion, Fill, Gap, GapRemainder};
+use super::fill::Fill;
+use super::gap::{BoundaryMotion, Gap, GapRemainder};
 use super::moments::{GapPair, Surrounding, of_surface};
 use super::share::give;
 use crate::formulations::fluid::cloud::{FlowCloud, Group, PARTS};
