@@ -16,9 +16,9 @@ use crate::world::{BodyId, Mobility};
 const TOUCH: f64 = 1.25;
 /// Width of a dry part in contact, over the spacing of the fluid, from which on a body is reported.
 const MIN_WIDTH: f64 = 3.0;
-/// Distance, over the spacing of the fluid, by which the fluid beside a body may reach less far towards what
-/// the body touches than the body itself: half a spacing where its lattice is shifted against that of the
-/// body; in a container of two layers, half as wide as those of the fluid, it is one and a quarter.
+/// Distance, over the spacing of the fluid, by which the fluid beside a body may be farther from what the
+/// body touches than the body itself: half a spacing where its lattice is shifted against that of the body;
+/// in a container of two layers, half as wide as those of the fluid, it is one and a quarter.
 const REACH: f64 = 0.75;
 
 /// Warns, once, of the first body that lies on something and is wet elsewhere; `spacing` is that of the
@@ -32,7 +32,6 @@ pub fn look(
     if *is_told {
         return Ok(());
     }
-    let across = if cloud.plane { 1 } else { 2 };
     for group in cloud.groups.iter().filter(|group| group.fluid().is_none()) {
         let Role::Boundary(surface) = &group.role else { continue };
         let is_wet = |row: usize| cloud.is_wet(row);
@@ -54,23 +53,11 @@ pub fn look(
         }
         let place_of = |row: usize| cloud.records[row].position();
         let targets: Vec<DVec3> = free.iter().map(|&k| place_of(group.cloud.start + k)).collect();
-        let own = width(cloud, &cloud.records[group.cloud.start]);
-        let mut touching = touching(cloud, group, &targets, own, spacing).map_err(|error| {
-            StepError::System { system: "fluid_watch".to_owned(), message: error.to_string() }
+        let first = first_above_gap(cloud, group, &targets, spacing).map_err(|error| StepError::System {
+            system: "fluid_watch".to_owned(),
+            message: error.to_string(),
         })?;
-        let is_wide =
-            |found: &[(usize, DVec3)]| found.len() as f64 >= (MIN_WIDTH * spacing / own).powi(across);
-        if !is_wide(&touching) {
-            continue;
-        }
-        let beside = fluid_beside(cloud, group.body);
-        touching.retain(|&(k, way)| {
-            let reach = |x: &DVec3| cloud.offset(targets[k], *x).dot(way) > -REACH * spacing;
-            beside.iter().any(reach)
-        });
-        let Some(&(first, _)) = touching.first().filter(|_| is_wide(&touching)) else {
-            continue;
-        };
+        let Some(first) = first else { continue };
         step.warnings.push(format!(
             "`{}` lies on another body or a wall at {}, and the fluid has no pressure in the gap between the two: what acts on it there is missing, and the rest presses it on; leave two \
              spacings of the fluid between them, or make it `Rigid` and thicker than the support of the fluid",
@@ -81,6 +68,29 @@ pub fn look(
         return Ok(());
     }
     Ok(())
+}
+
+/// Number of the first of these places, of particles of a body without fluid, that touch another boundary
+/// over some width beside fluid.
+fn first_above_gap(
+    cloud: &FlowCloud,
+    group: &Group,
+    targets: &[DVec3],
+    spacing: f64,
+) -> Result<Option<usize>, NeighborError> {
+    let own = width(cloud, &cloud.records[group.cloud.start]);
+    let apart = |other: f64| 0.5 * (own + other);
+    let across = if cloud.plane { 1 } else { 2 };
+    let is_wide = |found: &[(usize, BodyId)]| found.len() as f64 >= (MIN_WIDTH * spacing / own).powi(across);
+    let mut touching = near_others(cloud, group, targets, &|other| TOUCH * apart(other), spacing)?;
+    if !is_wide(&touching) {
+        return Ok(None);
+    }
+    // Fluid that could get into the gap is beside both.
+    let beside = fluid_beside(cloud, group.body);
+    let wetted = near_others(cloud, group, &beside, &|other| REACH * spacing + apart(other), spacing)?;
+    touching.retain(|(_, body)| wetted.iter().any(|(_, wet)| wet == body));
+    Ok(touching.first().filter(|_| is_wide(&touching)).map(|(first, _)| *first))
 }
 
 /// Width of a particle, m.
@@ -97,30 +107,32 @@ fn fluid_beside(cloud: &FlowCloud, body: BodyId) -> Vec<DVec3> {
     beside.iter().map(|&j| cloud.records[j as usize].position()).collect()
 }
 
-/// Numbers of the places that have a particle of another boundary beside them, with the direction to the
-/// nearest one; particles there have the width `own`, m, and none is wider than `spacing`, m.
-fn touching(
+/// Numbers of the places that are near particles of other boundaries than `group`, with the bodies of the
+/// nearest ones; `reach` is the distance that counts as near, m, of a particle of that width, m, none of
+/// which is wider than `spacing`, m.
+fn near_others(
     cloud: &FlowCloud,
     group: &Group,
-    targets: &[DVec3],
-    own: f64,
+    places: &[DVec3],
+    reach: &dyn Fn(f64) -> f64,
     spacing: f64,
-) -> Result<Vec<(usize, DVec3)>, NeighborError> {
+) -> Result<Vec<(usize, BodyId)>, NeighborError> {
     let others = cloud.groups.iter().filter(|other| other.fluid().is_none() && other.body != group.body);
-    let others = others.flat_map(|other| cloud.records[other.cloud.clone()].iter());
-    let others: Vec<&FlowParticle> = others.filter(|record| record.volume() > 0.0).collect();
-    let sources: Vec<DVec3> = others.iter().map(|record| record.position()).collect();
+    let others = others
+        .flat_map(|other| cloud.records[other.cloud.clone()].iter().map(move |record| (other.body, record)));
+    let others: Vec<(BodyId, &FlowParticle)> = others.filter(|(_, record)| record.volume() > 0.0).collect();
+    let sources: Vec<DVec3> = others.iter().map(|(_, record)| record.position()).collect();
     let mut list = NeighborList::default();
-    let (from, to) = (Cloud::uniform(targets, TOUCH * spacing), Cloud::uniform(&sources, TOUCH * spacing));
+    let farthest = reach(spacing);
+    let (from, to) = (Cloud::uniform(places, farthest), Cloud::uniform(&sources, farthest));
     NeighborSearch::default().between(from, to, 0.0, cloud.pairs.periodic(), &mut list)?;
-    let touches = |k: usize, j: u32| {
-        let reach = 0.5 * TOUCH * (own + width(cloud, others[j as usize]));
-        let way = cloud.offset(targets[k], sources[j as usize]);
-        (way.length() < reach).then_some(way)
-    };
     let nearest = |k: usize| {
-        let ways = list.row(k).iter().filter_map(|&j| touches(k, j));
-        ways.min_by(|a, b| a.length().total_cmp(&b.length())).map(|way| (k, way.normalize_or_zero()))
+        let near = list.row(k).iter().filter_map(|&j| {
+            let (body, record) = others[j as usize];
+            let distance = cloud.offset(places[k], sources[j as usize]).length();
+            (distance < reach(width(cloud, record))).then_some((distance, body))
+        });
+        near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, body)| (k, body))
     };
-    Ok((0..targets.len()).filter_map(nearest).collect())
+    Ok((0..places.len()).filter_map(nearest).collect())
 }
