@@ -68,7 +68,7 @@ impl ClosedWatch {
             return None;
         }
         Some(format!(
-            "walls and bodies have taken {} of the work on {}, without a free surface, by {}, {:.0} % of what has compressed it: its pressure is wrong by about as much, \
+            "walls and bodies have taken {} of the work on {}, without a free surface, by {}, {:.0} % of what has compressed it: its pressure is wrong by about as much where nothing gives way, and in soft vessels its volume by that share of its compression, \
              because the fluid beside them is compressed by half of their motion{}",
             quantity(taken, "J"),
             named(cloud, step),
