@@ -19,6 +19,9 @@ pub(crate) const CASE: Case = Case {
 
 /// Area of the water over the length of the tank, m.
 const LEVEL: f64 = 0.2;
+/// Tolerance from that many particles over the level on; with fewer it is proportional to the spacing.
+const TOLERANCE: f64 = 0.01;
+const DEEP: f64 = 8.0;
 /// Resolution from which on the run in three dimensions without shifting is part of the case.
 const FINE: usize = 20;
 const SHIFTED: &str =
@@ -78,7 +81,7 @@ fn settle(registry: &Registry, across: usize, solid: bool, shifted: bool) -> Res
             format!("level, {name}"),
             level,
             LEVEL,
-            Tolerance::Relative(0.01),
+            Tolerance::Relative(TOLERANCE * (DEEP * spacing / LEVEL).max(1.0)),
             "m",
             "volume over area",
         )
