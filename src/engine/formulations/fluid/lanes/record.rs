@@ -36,7 +36,8 @@ impl FlowParticle {
         self.motion.xyz()
     }
 
-    /// Pressure, Pa.
+    /// Pressure times the factor of pressures in sums over pairs, Pa (`FlowCloud::pressure` has that of the
+    /// particle).
     #[inline(always)]
     pub fn pressure(&self) -> f64 {
         self.motion.0[3]
