@@ -70,7 +70,8 @@ impl Run for Continuity {
             return Ok(());
         }
         let cloud = step.resources.get::<FlowCloud>();
-        let (factor, by_terms) = (cloud.pressure_factor, self.account.is_some());
+        let flow = 0.5 * dt * cloud.pressure_factor;
+        let terms = if self.account.is_some() { 0.5 * dt } else { 0.0 };
         for group in &cloud.groups {
             let Some(state) = group.fluid() else { break };
             let view = step.world.phase(group.phase);
@@ -90,16 +91,7 @@ impl Run for Continuity {
                 &removed[rows],
             );
             let change = for_each_own_block(slices, &mut self.sums, &|first, rows: Rows<'_>| {
-                run_hot(AdvanceDensity {
-                    state,
-                    dt,
-                    factor,
-                    by_terms,
-                    shift: due,
-                    of_boundaries,
-                    first,
-                    rows,
-                })
+                run_hot(AdvanceDensity { state, flow, terms, shift: due, of_boundaries, first, rows })
             });
             if change.broken > 0 {
                 return Err(step.unstable("the density must be positive", group.body, change.broken - 1));
@@ -132,10 +124,10 @@ type Rows<'a> = (&'a mut [Density], &'a [f64], &'a [DensityRate], &'a [Mass], &'
 /// The densities of a block.
 struct AdvanceDensity<'a> {
     state: &'a FluidState,
-    dt: f64,
-    /// What multiplies rates of compression.
-    factor: f64,
-    by_terms: bool,
+    /// Half of the step, s: for rates of compression, times the factor of pressures, and for those of pair
+    /// terms, zero without any.
+    flow: f64,
+    terms: f64,
     shift: Option<&'a [DensityShift]>,
     /// The part of the rate of compression that the pressure of boundaries answers for.
     of_boundaries: Option<&'a [f64]>,
@@ -148,7 +140,7 @@ impl HotLoop for AdvanceDensity<'_> {
 
     #[inline(always)]
     fn run<A: FourLanes>(self, a: A) -> Change {
-        let Self { state, dt, factor, by_terms, shift, of_boundaries, first, rows } = self;
+        let Self { state, flow, terms, shift, of_boundaries, first, rows } = self;
         let (density, compression, rate, mass, removed) = rows;
         let (mut change, mut least, mut sum) = (Change::default(), f64::INFINITY, 0.0);
         let count = density.len();
@@ -164,9 +156,9 @@ impl HotLoop for AdvanceDensity<'_> {
             // Half of what pair terms and displacements do comes before the flow and half after it: the flow
             // then compresses at the mean of the pressures of the two kicks, and the energy balance closes to
             // second order in the step.
-            let by_terms = if by_terms { 0.5 * dt * rate[k].0 } else { 0.0 };
+            let by_terms = terms * rate[k].0;
             let shift = shift.map_or(0.0, |shift| 0.5 * shift[first + k].0);
-            let half = -0.5 * dt * (factor * compression[k]);
+            let half = -flow * compression[k];
             let before = rho.0 + by_terms + shift;
             let after = a.scalar_mul_add(before, half, before) / (1.0 - half);
             if shift != 0.0 {
@@ -183,8 +175,7 @@ impl HotLoop for AdvanceDensity<'_> {
             if of_boundaries != 0.0 {
                 // The mean of the pressures of the two kicks, which do the work.
                 let volume = mass[k].0 / (before * after).sqrt();
-                change.by_boundaries +=
-                    state.mean_pressure(rho.0, end) * volume * (factor * of_boundaries) * dt;
+                change.by_boundaries += state.mean_pressure(rho.0, end) * volume * of_boundaries * 2.0 * flow;
             }
             rho.0 = end;
             least = if rho.0 < least { rho.0 } else { least };
