@@ -1,9 +1,9 @@
 //! The factor of pressures in sums over pairs.
 //!
-//! The force of a pressure that rises evenly is its slope times `tau = tr(sum_j V_j w_ij x_ij (x) x_ij) / d` in
-//! d dimensions: 1 for infinitely many neighbours, 0.99 to 1 in lattices, 0.97 once particles have mixed.
-//! So the mean s = 1 / tau over the particles inside of fluids multiplies all pressures in sums over pairs,
-//! and the rates of compression, which are their adjoint. The pressure is right in the mean, and as s is one
+//! The force of a pressure that rises evenly is its slope times `tau = tr(sum_j V_j w_ij x_ij (x) x_ij) / d`
+//! in d dimensions: 1 for infinitely many neighbours, 0.99 to 1 in lattices, 0.97 among mixed particles. So
+//! the mean s = 1 / tau over the particles inside of fluids multiplies all pressures in sums over pairs, and
+//! the rates of compression, which are their adjoint. The pressure is right in the mean, and as s is one
 //! number for all pairs, momentum, angular momentum and the balance of energy are as exact as without it.
 
 use super::super::cloud::{ArrangementPass, FlowCloud, RowSums};
