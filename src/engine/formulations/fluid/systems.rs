@@ -88,22 +88,7 @@ pub fn add(
         .reads_own_packed()
         .after(REMOVAL);
     sim.add_system(columns.into_iter().fold(lists, |system, column| system.touches(column, Mode::Writes)));
-    sim.add_system(
-        System::new(Stage::Neighbors, COMPRESSION, Compression)
-            .on_phases([fluid])
-            .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
-            .reads_own_packed()
-            .touches_packed(COMPRESSION_RATES, Mode::Writes)
-            .after(NEIGHBORS),
-    );
-    sim.add_system(
-        System::new(Stage::Neighbors, "pressure_factor", PressureFactor::default())
-            .on_phases([fluid])
-            .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
-            .reads_own_packed()
-            .touches_packed(PRESSURE_FACTOR, Mode::Writes)
-            .after(COMPRESSION),
-    );
+    add_compression(sim, fluid);
     if !boundaries.is_empty() {
         let system = System::new(Stage::Neighbors, "fluid_repulsion", repulsion)
             .on_phases(phases)
@@ -129,6 +114,26 @@ pub fn add(
     }
     add_boundaries(sim, groups, boundaries, spin);
     Ok(())
+}
+
+/// Adds what finds neighbours within the support and rates of compression, and the factor of pressures.
+fn add_compression(sim: &mut SimBuilder<'_>, fluid: PhaseId) {
+    sim.add_system(
+        System::new(Stage::Neighbors, COMPRESSION, Compression)
+            .on_phases([fluid])
+            .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
+            .reads_own_packed()
+            .touches_packed(COMPRESSION_RATES, Mode::Writes)
+            .after(NEIGHBORS),
+    );
+    sim.add_system(
+        System::new(Stage::Neighbors, "pressure_factor", PressureFactor::default())
+            .on_phases([fluid])
+            .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
+            .reads_own_packed()
+            .touches_packed(PRESSURE_FACTOR, Mode::Writes)
+            .after(COMPRESSION),
+    );
 }
 
 /// The system with access to the damage of bodies that can fail: a body of which particles have failed has

@@ -16,6 +16,8 @@ const INTERVAL: u64 = 32;
 /// First moment `sum_j V_j w_ij x_ij` times the smoothing length from which on a particle does not count as
 /// inside: at the surface it is some 0.5, two spacings below it 0.1, among mixed particles 0.02 to 0.05.
 const OUTSIDE: f64 = 0.1;
+/// Least tau of a particle inside: those of drops and threads, whose first moments may vanish too, have less.
+const LEAST: f64 = 0.9;
 
 /// Finds the factor.
 pub struct PressureFactor {
@@ -58,10 +60,12 @@ impl PressureFactor {
     fn measure(&mut self, cloud: &FlowCloud) -> f64 {
         let (h, axes) = (cloud.kernel.smoothing_length(), if cloud.plane { 2.0 } else { 3.0 });
         let output = |_, moment: &MomentMatrix, first: DVec3| {
-            let weight = (1.0 - (first.length() * h / OUTSIDE).powi(2)).max(0.0);
             let diagonal = moment.matrix();
             let trace = diagonal.xx + diagonal.yy + if cloud.plane { 0.0 } else { diagonal.zz };
-            [weight, weight * trace / axes]
+            let tau = trace / axes;
+            let is_full = if tau > LEAST { 1.0 } else { 0.0 };
+            let weight = is_full * (1.0 - (first.length() * h / OUTSIDE).powi(2)).max(0.0);
+            [weight, weight * tau]
         };
         self.inside.resize(cloud.fluid, [0.0; 2]);
         cloud.for_each_row(0, &mut self.inside, &mut self.sums, &ArrangementPass { cloud, output });

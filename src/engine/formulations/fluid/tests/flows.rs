@@ -91,6 +91,27 @@ fn weight(x: DVec3, kernel: &Kernel, h: f64) -> f64 {
     -kernel.dw_dr(x.length(), h) / x.length()
 }
 
+/// The factor of pressures: the inverse of the mean of tau, half or a third of the trace of the second
+/// moments, and of a one, over particles of the fluid with a tau above 0.9, weighed by 1 less the square of
+/// the first moment over 0.1 / h.
+fn pressure_factor(fluid: &[Particle], walls: &[Particle], kernel: &Kernel, h: f64, dimension: usize) -> f64 {
+    let (mut total, mut sum) = (1.0, 1.0);
+    for a in fluid {
+        let (mut first, mut trace) = (DVec3::ZERO, 0.0);
+        for b in fluid.iter().chain(walls).filter(|b| b.x != a.x) {
+            let x = b.x - a.x;
+            first += b.volume * weight(x, kernel, h) * x;
+            trace += b.volume * weight(x, kernel, h) * x.length_squared() / dimension as f64;
+        }
+        let share = (1.0 - (10.0 * h * first.length()).powi(2)).max(0.0);
+        if trace > 0.9 {
+            total += share;
+            sum += share * trace;
+        }
+    }
+    total / sum
+}
+
 /// Force of b on a, by the formula of the module in ten plain lines; `spin` is that of the pair.
 fn pair_force(a: &Particle, b: &Particle, viscosity: f64, spin: DVec3, (kernel, h): (&Kernel, f64)) -> DVec3 {
     let x = b.x - a.x;
@@ -141,7 +162,9 @@ fn forces_are_those_of_a_naive_sum_over_all_pairs_and_opposite_on_the_wall() {
             let support = if dimension == 2 { 3.0 * 0.04 } else { 2.6 * 0.05 };
             let (kernel, h) =
                 (Kernel::new(KernelName::WendlandC2, dimension).expect("a kernel"), 0.5 * support);
-            let (fluid, walls) = particles(&sim, no_slip, &kernel, h);
+            let (mut fluid, mut walls) = particles(&sim, no_slip, &kernel, h);
+            let factor = pressure_factor(&fluid, &walls, &kernel, h, dimension);
+            fluid.iter_mut().chain(&mut walls).for_each(|particle| particle.p *= factor);
             let mass = column::<Mass>(&sim, 0);
             let forces = column::<Force>(&sim, 0);
             let scale = forces.iter().map(|f| f.0.length()).fold(0.0, f64::max);

@@ -73,11 +73,25 @@ fn two_fluids_press_on_each_other_with_opposite_forces() {
         own + neighbors(i).into_iter().map(of).sum::<f64>() / inertia
     };
     let spins: Vec<f64> = (0..all.len()).map(sharpened).collect();
+    // The factor of pressures.
+    let (mut total, mut traces) = (1.0, 1.0);
+    for i in 0..all.len() {
+        let (mut first, mut trace) = (DVec3::ZERO, 0.0);
+        for (_, x, weight, ..) in neighbors(i) {
+            first += weight * x;
+            trace += 0.5 * weight * x.length_squared();
+        }
+        let share = (1.0 - (first.length() * 0.075 / 0.1).powi(2)).max(0.0);
+        if trace > 0.9 {
+            (total, traces) = (total + share, traces + share * trace);
+        }
+    }
+    let factor = total / traces;
     for (i, &(_, _, _, p_a, volume_a, found)) in all.iter().enumerate() {
         let mut sum = DVec3::ZERO;
         for (j, x, weight, mean, v) in neighbors(i) {
             let turning = 0.5 * (spins[i] + spins[j]) * DVec3::new(-x.y, x.x, 0.0);
-            sum += volume_a * weight * (4.0 * mean * (v - turning) - (p_a + all[j].3) * x);
+            sum += volume_a * weight * (4.0 * mean * (v - turning) - factor * (p_a + all[j].3) * x);
         }
         assert!(found.distance(sum) < 1e-11 * scale, "{found} {sum}");
     }

@@ -96,7 +96,8 @@ impl GapPressure {
                 let toward = gap.around.toward();
                 force = force.dot(toward) * toward;
             }
-            give(cloud, row, cloud.records[row].volume() * force, across, forces);
+            let force = cloud.pressure_factor * cloud.records[row].volume() * force;
+            give(cloud, row, force, across, forces);
         }
     }
 }
