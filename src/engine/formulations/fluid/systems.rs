@@ -219,6 +219,7 @@ fn add_state(sim: &mut SimBuilder<'_>, fluid: PhaseId, account: Option<String>) 
     sim.add_system(
         System::new(Stage::Constitutive, "fluid_pressure", pressure)
             .on_phases([fluid])
+            .touches_packed(PRESSURE_FACTOR, Mode::Reads)
             .touches_packed(FLOW_RECORDS, Mode::Writes)
             .reads_own_packed()
             .reads::<Density>()
@@ -237,6 +238,7 @@ fn add_boundaries(sim: &mut SimBuilder<'_>, groups: &[Group], boundaries: Vec<Ph
             System::new(Stage::Boundary, WALL_PRESSURE, state)
                 .on_phases(boundaries.iter().copied())
                 .in_long_steps()
+                .touches_packed(PRESSURE_FACTOR, Mode::Reads)
                 .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
                 .reads_own_packed()
                 .touches_packed(FLOW_RECORDS, Mode::Writes)
@@ -257,22 +259,7 @@ fn add_boundaries(sim: &mut SimBuilder<'_>, groups: &[Group], boundaries: Vec<Ph
             );
         }
     }
-    if groups.iter().any(|group| matches!(&group.role, Role::Boundary(surface) if surface.moved)) {
-        let gaps = GapPressure::new(sim.gravity(), sim.body(groups[0].body).spacing);
-        sim.add_system(
-            System::new(Stage::Boundary, "gap_pressure", gaps)
-                .on_phases(boundaries.iter().copied())
-                .in_long_steps()
-                .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
-                .reads_own_packed()
-                .touches_packed(FLOW_LOADS, Mode::ReadsNear)
-                .touches_packed(EDGES, Mode::Reads)
-                .touches_packed(GAP_FORCES, Mode::Writes)
-                .reads_near::<Velocity>()
-                .after(WALL_PRESSURE)
-                .after_any(EDGE_FORCES),
-        );
-    }
+    add_gap_pressure(sim, groups, &boundaries);
     for phase in boundaries {
         let of_phase = sim.bodies().iter().find(|body| body.phase == phase);
         let label = match of_phase.map(|body| body.kind) {
@@ -287,6 +274,28 @@ fn add_boundaries(sim: &mut SimBuilder<'_>, groups: &[Group], boundaries: Vec<Ph
             add_force(sim, groups, phase, label, None);
         }
     }
+}
+
+/// Adds the pressure in gaps, where there are bodies beside which there may be some.
+fn add_gap_pressure(sim: &mut SimBuilder<'_>, groups: &[Group], boundaries: &[PhaseId]) {
+    if !groups.iter().any(|group| matches!(&group.role, Role::Boundary(surface) if surface.moved)) {
+        return;
+    }
+    let gaps = GapPressure::new(sim.gravity(), sim.body(groups[0].body).spacing);
+    sim.add_system(
+        System::new(Stage::Boundary, "gap_pressure", gaps)
+            .on_phases(boundaries.iter().copied())
+            .in_long_steps()
+            .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
+            .reads_own_packed()
+            .touches_packed(FLOW_LOADS, Mode::ReadsNear)
+            .touches_packed(EDGES, Mode::Reads)
+            .touches_packed(PRESSURE_FACTOR, Mode::Reads)
+            .touches_packed(GAP_FORCES, Mode::Writes)
+            .reads_near::<Velocity>()
+            .after(WALL_PRESSURE)
+            .after_any(EDGE_FORCES),
+    );
 }
 
 /// Adds the force on particles that take long steps; those that flow get their weight and their pair terms

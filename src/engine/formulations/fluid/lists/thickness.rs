@@ -17,7 +17,7 @@ const BESIDE: f64 = 1.6;
 /// Cosine of the angle from the outward direction within which an outermost particle has no such neighbour.
 const OUTWARD: f64 = 0.5;
 /// Depth of a part that has two sides, beyond where the body is thick, over the support.
-const EDGES: f64 = 1.5;
+const DEPTH: f64 = 1.5;
 
 /// Where a body is thinner than the support.
 pub struct Thin {
@@ -82,13 +82,16 @@ impl Thickness {
     }
 
     /// Where the body, or a part of it, is a sheet, whose sides have a pressure of their own each: no ball as
-    /// wide as the support fits, over more than that from where one does. An edge of 25 degrees or more
-    /// is none, however small the body: there is one pressure around its tip, and as that fills little of the
-    /// kernels of the fluid, one that did not see its other side would be drawn to it and leave it as a jet.
+    /// wide as the support fits within one and a half supports. An edge of 25 degrees or more is none in a
+    /// body of any size: there is one pressure around its tip, which fills little of the kernels of the
+    /// fluid. If that did not see the other side, it would be drawn to the tip and leave it as a jet.
     pub fn sheet(&self) -> Option<Thin> {
+        if !(0..self.positions.len()).any(|i| self.is_thin(i)) {
+            return None;
+        }
         let parts = self.thin_parts();
         let found = self.thinnest((0..parts.len()).filter(|&i| parts[i] && self.is_thin(i)))?;
-        self.has_fins(&parts, EDGES).then_some(found)
+        self.has_fins(&parts, DEPTH).then_some(found)
     }
 
     fn thinnest(&self, particles: impl Iterator<Item = usize>) -> Option<Thin> {
@@ -99,22 +102,25 @@ impl Thickness {
     /// Whether a thin part ends farther from the thick part than that many supports: 1.5 are those of a fin
     /// or an edge below some 25 degrees, two those of a fin or an edge below 20.
     fn has_fins(&self, parts: &[bool], supports: f64) -> bool {
-        let mut is_known = vec![false; parts.len()];
-        let mut waiting: BinaryHeap<_> =
-            (0..parts.len()).filter(|&i| !parts[i]).map(|i| (Reverse(0), i)).collect();
-        while let Some((Reverse(distance), i)) = waiting.pop() {
-            if std::mem::replace(&mut is_known[i], true) {
+        let start = |is_thin: &bool| if *is_thin { f64::INFINITY } else { 0.0 };
+        let mut distances: Vec<f64> = parts.iter().map(start).collect();
+        let has_thin = |i: &usize| !parts[*i] && self.neighbors.row(*i).iter().any(|&j| parts[j as usize]);
+        // The bits of numbers above zero rise with them.
+        let mut waiting: BinaryHeap<_> = (0..parts.len()).filter(has_thin).map(|i| (Reverse(0), i)).collect();
+        while let Some((Reverse(bits), i)) = waiting.pop() {
+            let distance = f64::from_bits(bits);
+            if distance > distances[i] {
                 continue;
             }
             for j in self.near(i, self.support) {
-                // The bits of numbers above zero rise with them.
-                let farther = f64::from_bits(distance) + self.from(i, j).length();
-                if !is_known[j] && farther < supports * self.support {
+                let farther = distance + self.from(i, j).length();
+                if farther < distances[j].min(supports * self.support) {
+                    distances[j] = farther;
                     waiting.push((Reverse(farther.to_bits()), j));
                 }
             }
         }
-        is_known.contains(&false)
+        distances.contains(&f64::INFINITY)
     }
 
     fn is_thin(&self, i: usize) -> bool {

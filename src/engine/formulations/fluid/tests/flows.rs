@@ -5,7 +5,7 @@ use glam::{DMat3, DVec3};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{column, double, simulation, simulation_with};
+use super::{column, double, pressure_factor, simulation, simulation_with};
 use crate::formulations::fluid::FlowCloud;
 use crate::kernels::{Kernel, KernelName};
 use crate::plugin::{Plugin, Registry, SetupError, SimBuilder};
@@ -91,25 +91,18 @@ fn weight(x: DVec3, kernel: &Kernel, h: f64) -> f64 {
     -kernel.dw_dr(x.length(), h) / x.length()
 }
 
-/// The factor of pressures: the inverse of the mean of tau, half or a third of the trace of the second
-/// moments, and of a one, over particles of the fluid with a tau above 0.9, weighed by 1 less the square of
-/// the first moment over 0.1 / h.
-fn pressure_factor(fluid: &[Particle], walls: &[Particle], kernel: &Kernel, h: f64, dimension: usize) -> f64 {
-    let (mut total, mut sum) = (1.0, 1.0);
-    for a in fluid {
-        let (mut first, mut trace) = (DVec3::ZERO, 0.0);
-        for b in fluid.iter().chain(walls).filter(|b| b.x != a.x) {
-            let x = b.x - a.x;
-            first += b.volume * weight(x, kernel, h) * x;
-            trace += b.volume * weight(x, kernel, h) * x.length_squared() / dimension as f64;
-        }
-        let share = (1.0 - (10.0 * h * first.length()).powi(2)).max(0.0);
-        if trace > 0.9 {
-            total += share;
-            sum += share * trace;
-        }
-    }
-    total / sum
+/// The first moment of a particle among all others, 1/m, and the trace of the second.
+fn moments<'a>(
+    a: &Particle,
+    all: impl Iterator<Item = &'a Particle>,
+    kernel: &Kernel,
+    h: f64,
+) -> (DVec3, f64) {
+    let others = all.filter(|b| b.x != a.x).map(|b| (b.x - a.x, b.volume));
+    others.fold((DVec3::ZERO, 0.0), |(first, trace), (x, volume)| {
+        let weight = volume * weight(x, kernel, h);
+        (first + weight * x, trace + weight * x.length_squared())
+    })
 }
 
 /// Force of b on a, by the formula of the module in ten plain lines; `spin` is that of the pair.
@@ -163,7 +156,8 @@ fn forces_are_those_of_a_naive_sum_over_all_pairs_and_opposite_on_the_wall() {
             let (kernel, h) =
                 (Kernel::new(KernelName::WendlandC2, dimension).expect("a kernel"), 0.5 * support);
             let (mut fluid, mut walls) = particles(&sim, no_slip, &kernel, h);
-            let factor = pressure_factor(&fluid, &walls, &kernel, h, dimension);
+            let of = |a: &Particle| moments(a, fluid.iter().chain(&walls), &kernel, h);
+            let factor = pressure_factor(fluid.iter().map(of), h, dimension);
             fluid.iter_mut().chain(&mut walls).for_each(|particle| particle.p *= factor);
             let mass = column::<Mass>(&sim, 0);
             let forces = column::<Force>(&sim, 0);

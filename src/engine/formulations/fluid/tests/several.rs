@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use glam::DVec3;
 
-use super::{column, double, simulation};
+use super::{column, double, pressure_factor, simulation};
 use crate::assembly::build;
 use crate::formulations::fluid::FlowCloud;
 use crate::kernels::{Kernel, KernelName};
@@ -73,20 +73,12 @@ fn two_fluids_press_on_each_other_with_opposite_forces() {
         own + neighbors(i).into_iter().map(of).sum::<f64>() / inertia
     };
     let spins: Vec<f64> = (0..all.len()).map(sharpened).collect();
-    // The factor of pressures.
-    let (mut total, mut traces) = (1.0, 1.0);
-    for i in 0..all.len() {
-        let (mut first, mut trace) = (DVec3::ZERO, 0.0);
-        for (_, x, weight, ..) in neighbors(i) {
-            first += weight * x;
-            trace += 0.5 * weight * x.length_squared();
-        }
-        let share = (1.0 - (first.length() * 0.075 / 0.1).powi(2)).max(0.0);
-        if trace > 0.9 {
-            (total, traces) = (total + share, traces + share * trace);
-        }
-    }
-    let factor = total / traces;
+    let moments = |i: usize| {
+        neighbors(i).into_iter().fold((DVec3::ZERO, 0.0), |(first, trace), (_, x, weight, ..)| {
+            (first + weight * x, trace + weight * x.length_squared())
+        })
+    };
+    let factor = pressure_factor((0..all.len()).map(moments), 0.075, 2);
     for (i, &(_, _, _, p_a, volume_a, found)) in all.iter().enumerate() {
         let mut sum = DVec3::ZERO;
         for (j, x, weight, mean, v) in neighbors(i) {

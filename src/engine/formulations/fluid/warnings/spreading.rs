@@ -113,6 +113,7 @@ impl BlockSum for PressureSums {
 /// Energy of compression by the pressure that differs from that at rest, and by all that varies, J. A
 /// pressure that is the same everywhere drives no flow.
 fn stored(cloud: &FlowCloud, gravity: DVec3) -> (f64, f64) {
+    let factor = cloud.pressure_factor;
     cloud.groups.iter().map_while(|group| Some((group, group.fluid()?))).fold(
         (0.0, 0.0),
         |all, (group, state)| {
@@ -121,7 +122,7 @@ fn stored(cloud: &FlowCloud, gravity: DVec3) -> (f64, f64) {
                 sum_over_blocks(records, &|_, records: &[FlowParticle]| {
                     let mut sums = PressureSums::default();
                     for record in records.iter().filter(|record| record.volume() > 0.0) {
-                        let p = record.pressure();
+                        let p = record.pressure() / factor;
                         let q = p - state.density * gravity.dot(record.position());
                         sums.add(&PressureSums([1.0, p, q, p * p, q * q].map(|x| record.volume() * x)));
                     }
