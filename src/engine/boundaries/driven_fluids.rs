@@ -8,7 +8,7 @@ pub(super) fn warn(name: &str, selection: &Selection, sim: &mut SimBuilder<'_>) 
     let warning = |body: &BodyPlan| {
         format!(
             "`{name}` drives those particles of the fluid `{}` that it selects at the start for the whole run, wherever they are: for a velocity to start with give the body \
-             `velocity`, or an `InitialVelocity`; an inflow is driven by a `Wall` as a piston, or in a periodic domain by `MeanVelocity`",
+             `velocity`, or an `InitialVelocity`; an inflow is driven by a `Wall` as a piston, or in a periodic domain by `RelaxationZone` or `MeanVelocity`",
             body.name
         )
     };

@@ -30,6 +30,7 @@ mod pressure;
 mod pulses;
 #[cfg(test)]
 mod pulses_tests;
+mod relaxation_zone;
 mod rigid_part;
 mod rotation_rate;
 mod skin_load;
@@ -45,6 +46,10 @@ mod turning;
 #[cfg(test)]
 mod turning_tests;
 mod velocity;
+mod zone_box;
+mod zone_flow;
+#[cfg(test)]
+mod zone_tests;
 
 pub use body_force::BodyForce;
 pub use displacement::Displacement;
@@ -54,6 +59,7 @@ pub use initial_displacement::InitialDisplacement;
 pub use initial_velocity::{GivenVelocities, InitialVelocity};
 pub use mean_velocity::MeanVelocity;
 pub use pressure::PressureLoad;
+pub use relaxation_zone::RelaxationZone;
 pub use rotation_rate::PrescribedRotation;
 pub use symmetry::{Side, Symmetry};
 pub use traction::Traction;
@@ -74,6 +80,7 @@ pub fn register(registry: &mut Registry) {
         .condition::<TotalForce>()
         .condition::<BodyForce>()
         .condition::<MeanVelocity>()
+        .condition::<RelaxationZone>()
         .condition::<Symmetry>()
         .condition::<PrescribedRotation>();
 }

@@ -1,0 +1,220 @@
+//! Zones in which a flow is led to a given velocity: inlets and outlets, generated and absorbed waves.
+
+use glam::DVec3;
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::field::VectorField;
+use super::zone_box::ZoneBox;
+use super::zone_flow::{ACCOUNT, FlowZone, FlowZones, NAME, ZoneFlow};
+use crate::notation::{place as words, quantity, quantity_to};
+use crate::plugin::{BodyKind, BodyPlan, Plugin, SetupError, SimBuilder};
+use crate::scene::{Expression, PerAxis, Select, Vec3};
+use crate::schedule::{Shared, Stage, System};
+use crate::world::{BodySet, Mass, Mobility, Position, Velocity};
+
+/// Leads fluids to a given velocity within a box: the inlet and outlet of a channel or of a stream past a
+/// body, the end of a tank in which waves are generated or absorbed.
+///
+/// Velocities decay towards `value` as v' = -rate s^2 (v - value), where s grows from 0 to 1 through the box
+/// in the direction of `along`: the flow enters the zone without a jump and has the given velocity at its
+/// end. An inlet and an outlet are one zone that closes a periodic domain: what leaves through the outlet
+/// loses its wake there, and comes in with the profile of the inlet. Along such an axis a uniform force per
+/// mass, times s^2, is adjusted until the mean velocity in the zone is the given one. The energy that the
+/// zone supplies is in the account `relaxation_zone`.
+///
+/// A channel from x = 0 to 2 m, 0.4 m high, its inlet and outlet closed by a zone 0.4 m long: `domain: (min:
+/// (-0.4, -0.1), max: (2, 0.5), periodic: [X])`, `RelaxationZone(min: (-0.4, 0), max: (0, 0.4), along: (1,
+/// 0), value: ("6*y*(0.4 - y)/0.16", 0))`, and an `InitialVelocity` with the same `value`, so that nothing
+/// has to be accelerated. Waves with a celerity of 3 m/s that end at x = 10 m: `RelaxationZone(min: (8, -1),
+/// max: (10, 1), along: (1, 0), value: (0, 0), rate: 9)`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RelaxationZone {
+    /// Fluid; `"water*"` stands for all whose names begin with `water`. Default: all fluids.
+    pub body: Option<String>,
+    /// Corner of the box with the smallest coordinates \[m\].
+    pub min: Vec3,
+    /// Corner of the box with the largest coordinates \[m\].
+    pub max: Vec3,
+    /// Direction in which the zone grows stronger, of any length \[-\]: that of the flow between an outlet
+    /// and an inlet, the one towards the end of a tank of waves.
+    pub along: Vec3,
+    /// Velocity per axis \[m/s\], a function of place and time; `None` leaves an axis free.
+    pub value: PerAxis<Expression>,
+    /// Rate at the end of the zone \[1/s\]. Default along a periodic axis: 6 c_0 over the length of the zone.
+    /// For waves 6 times their celerity over that length.
+    pub rate: Option<f64>,
+}
+
+/// Default rate, in speeds of sound over the length of the zone: its mean over the zone is a third of it. A
+/// sound wave that is long beside the zone meets a sheet of the resistance 2 rho c_0, of which one half goes
+/// back, one half passes, and one half of the energy is lost, the most that a sheet can take. The flow, ten
+/// times as slow as sound, keeps e^-20 of what it has in excess.
+const RATE: f64 = 6.0;
+/// Time within which the uniform force follows, over that in which sound crosses the period: with it the flux
+/// of an incompressible flow settles like an oscillator with 0.7 of the critical damping.
+const SETTLING: f64 = 1.0;
+/// Length of a zone below which it is warned of, in spacings.
+const SHORT: f64 = 10.0;
+/// Change of density by the acceleration of a column of fluid that is worth a warning, and the number of
+/// intervals of the run in which it is looked for.
+const COMPRESSED: f64 = 0.02;
+const TIMES: usize = 200;
+
+impl Plugin for RelaxationZone {
+    const NAME: &'static str = NAME;
+    const REFERENCE: &'static str =
+        "fringe region: J. Nordstrom, N. Nordin, D. Henningson, SIAM J. Sci. Comput. 20 (1999) 1365-1393";
+
+    fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+        let zone = self.zone(sim)?;
+        warnings(&zone, sim).into_iter().for_each(|warning| sim.warn(warning));
+        let bodies = BodySet::new(zone.bodies.iter().copied());
+        if let Some(zones) = sim.take_extensions::<Shared<FlowZones>>().pop() {
+            sim.shared_mut(zones).0.push(zone);
+            sim.leave_note(zones);
+            return Ok(());
+        }
+        let zones = sim.share(FlowZones(vec![zone]));
+        sim.leave_note(zones);
+        let phases = sim.phases_of(&bodies);
+        sim.add_system(
+            System::new(Stage::PostStep, ACCOUNT, ZoneFlow::new(zones))
+                .on_phases(phases)
+                .after_any("local_damping")
+                .after_any("xsph")
+                .after_any("particle_shifting")
+                .reads::<Position>()
+                .reads::<Mass>()
+                .reads::<Mobility>()
+                .writes::<Velocity>(),
+        );
+        Ok(())
+    }
+}
+
+impl RelaxationZone {
+    fn zone(self, sim: &SimBuilder<'_>) -> Result<FlowZone, SetupError> {
+        let bodies = self.fluids(sim)?;
+        let dimensions = sim.dimension().count();
+        let place = ZoneBox::new([self.min.0, self.max.0], self.along.0, dimensions, sim.periodic())?;
+        let sound = bodies.iter().filter_map(|body| body.material.sound_speed()).fold(0.0, f64::max);
+        let default = (0..dimensions).any(|axis| place.repeats(axis)).then_some(RATE * sound / place.length);
+        let Some(rate) = self.rate.or(default) else {
+            let help = "give the rate of decay at the end of the zone; waves are absorbed best at some 6 times their celerity over the length of the zone";
+            return Err(SetupError::parameter("rate", "`rate` is missing", help));
+        };
+        if !(rate > 0.0 && rate.is_finite()) {
+            let message = format!("`rate` must be positive, found {rate} 1/s");
+            return Err(SetupError::parameter("rate", message, "leave it out for the default"));
+        }
+        let field = VectorField::new(self.value, sim)?;
+        let sites = bodies.iter().flat_map(|body| body.sites.iter()).map(|site| site.position);
+        for site in sites.filter(|&site| place.strength(site) > 0.0) {
+            let value = field.at(place.image(site), 0.0);
+            if !value.is_finite() {
+                let message =
+                    format!("the velocity must be finite, found {} at {} m", words(value), words(site));
+                let help = "give an expression that is finite in the whole zone";
+                return Err(SetupError::parameter("value", message, help));
+            }
+        }
+        let flags = |is: [bool; 3]| DVec3::from_array(is.map(|is| f64::from(u8::from(is))));
+        let given = field.axes();
+        Ok(FlowZone {
+            bodies: bodies.iter().map(|body| body.id).collect(),
+            axes: flags(given),
+            field,
+            rate,
+            sound,
+            settling: SETTLING * place.period() / sound,
+            driven: flags([0, 1, 2].map(|axis| given[axis] && place.repeats(axis))),
+            place,
+        })
+    }
+
+    /// The fluids on which it acts.
+    fn fluids<'s>(&self, sim: &'s SimBuilder<'_>) -> Result<Vec<&'s BodyPlan>, SetupError> {
+        let is_fluid = |body: &&BodyPlan| body.kind == BodyKind::Fluid;
+        let Some(name) = &self.body else {
+            let all: Vec<&BodyPlan> = sim.bodies().iter().filter(is_fluid).collect();
+            let help = "a relaxation zone acts on bodies with `formulation: Fluid`";
+            return if all.is_empty() {
+                Err(SetupError::parameter("min", "the scene has no fluid", help))
+            } else {
+                Ok(all)
+            };
+        };
+        let select = Select { body: Some(name.clone()), ..Select::default() };
+        let named = sim.select_at_start(&select, "")?.parts;
+        let named: Vec<&BodyPlan> = named.iter().map(|(id, _)| sim.body(*id)).collect();
+        match named.iter().find(|body| !is_fluid(body)) {
+            None => Ok(named),
+            Some(body) => {
+                let message = format!("body `{}` is not a fluid", body.name);
+                Err(SetupError::parameter("body", message, "solids and walls are moved by `Velocity`"))
+            }
+        }
+    }
+}
+
+/// Warnings of a zone that is empty or short, or that the fluid can flow past.
+fn warnings(zone: &FlowZone, sim: &SimBuilder<'_>) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let bodies: Vec<&BodyPlan> = zone.bodies.iter().map(|id| sim.body(*id)).collect();
+    let sites = || bodies.iter().flat_map(|body| body.sites.iter()).map(|site| site.position);
+    if !sites().any(|site| zone.place.contains(site)) {
+        warnings.push(format!("no fluid is in the `{NAME}` {} at the start", zone.place.words()));
+    }
+    let spacing = bodies.iter().map(|body| body.spacing).fold(0.0, f64::max);
+    if zone.place.length < SHORT * spacing {
+        warnings.push(format!(
+            "a `{NAME}` is {} long, less than {SHORT} spacings of its fluid: the flow has no room in it to take the velocity that is given",
+            quantity(zone.place.length, "m")
+        ));
+    }
+    let within = |site: DVec3| (0.0..=1.0).contains(&zone.place.depth(site));
+    if let Some(site) = sites().find(|&site| within(site) && !zone.place.contains(site)) {
+        warnings.push(format!(
+            "the fluid reaches past the sides of a `{NAME}`, such as to {}: it can flow past the zone",
+            words(site)
+        ));
+    }
+    warnings.extend(too_fast(zone, sites(), sim));
+    warnings
+}
+
+/// A warning of a mean velocity along a period that changes faster than sound can follow: the whole column of
+/// fluid has to take part in it.
+fn too_fast(zone: &FlowZone, sites: impl Iterator<Item = DVec3>, sim: &SimBuilder<'_>) -> Option<String> {
+    let inside: Vec<(f64, DVec3)> = sites
+        .map(|site| (zone.place.strength(site), zone.place.image(site)))
+        .filter(|(strength, _)| *strength > 0.0)
+        .collect();
+    let weight = inside.iter().map(|(strength, _)| strength).sum::<f64>();
+    if weight == 0.0 || !zone.field.depends_on_time() {
+        return None;
+    }
+    let mean = |time: f64| {
+        let values =
+            inside.iter().map(|&(strength, site)| strength * zone.driven * zone.field.at(site, time));
+        values.sum::<DVec3>() / weight
+    };
+    let step = sim.scene().time.end / TIMES as f64;
+    let means: Vec<DVec3> = (0..=TIMES).map(|k| mean(k as f64 * step)).collect();
+    let rate = means.windows(2).map(|pair| pair[0].distance(pair[1]) / step).fold(0.0, f64::max);
+    let length = zone.place.period();
+    let compression = rate * length / (zone.sound * zone.sound);
+    (compression > COMPRESSED).then(|| {
+        format!(
+            "the velocity of a `{}` changes by up to {}: the acceleration of all fluid along the period of {} compresses it by some {:.0} %; let the velocity change {:.0} times as slowly, \
+             or start with it, by an `InitialVelocity`",
+            NAME,
+            quantity_to(rate, "m/s2", 2),
+            quantity(length, "m"),
+            100.0 * compression,
+            (compression / COMPRESSED).ceil()
+        )
+    })
+}
