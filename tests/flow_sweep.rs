@@ -71,6 +71,7 @@ const COARSE: &[(&str, &[(&str, &str)])] = &[
         ],
     ),
     ("taylor_green", &[("bodies.fluid.spacing", "0.05")]),
+    ("vortex_street", &[("parameters.dx", "0.025")]),
     (
         "water_on_plate",
         &[

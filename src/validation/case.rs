@@ -106,6 +106,7 @@ macro_rules! for_each_case {
             F8 fluids::floating_box::CASE;
             F9 fluids::rotating_patch::CASE;
             F10 fluids::moving_square::CASE;
+            F11 fluids::cylinder_in_channel::CASE;
             F12 fluids::rotating_flows::CASE;
             F13 fluids::vortices::CASE;
             F14 fluids::wedge_entry::CASE;

@@ -42,6 +42,7 @@ flows!(
     "floating_box",
     "sloshing",
     "taylor_green",
+    "vortex_street",
     "water_on_plate",
     "water_wheel"
 );

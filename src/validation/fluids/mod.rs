@@ -1,6 +1,7 @@
 //! Cases F: flows.
 
 pub mod cylinder_array;
+pub mod cylinder_in_channel;
 pub mod dam_break;
 pub mod dam_break_box;
 pub mod dam_front;
