@@ -61,6 +61,7 @@ const TEMPLATES: &[SceneTemplate] = &templates![
     "floating_box",
     "sloshing",
     "taylor_green",
+    "vortex_street",
 ];
 
 impl SceneTemplate {

@@ -107,7 +107,8 @@ pub fn flow(dimension: usize) -> Source {
                 (name: "tank", material: "wall", shape: Difference(Box(min: {outer}), Box(min: {inner})),
                  spacing: {spacing:?}, formulation: Wall(slip: No)),
             ],
-            conditions: [{clamp} Velocity(on: Select(body: "tank"), value: ("0.2*sin(20*t)", None))],
+            conditions: [{clamp} Velocity(on: Select(body: "tank"), value: ("0.2*sin(20*t)", None)),
+                RelaxationZone(min: (-0.1, 0, 0), max: (0.2, 0.3, 0.3), along: (-1, 0, 0), value: ("0.2*sin(20*t)", None), rate: 5)],
             plugins: [artificial_viscosity(alpha: 0.02, beta: 0.0)],
             time: (end: 10.0))"#
     );

@@ -48,6 +48,9 @@ struct ZoneState {
 
 /// Mean deviation after the force has settled, over the mean speed, that is worth a warning.
 const DEVIATES: f64 = 0.05;
+/// Deviation at the start over the speed of sound that is worth a warning: the change of density by the
+/// sound wave that it sends out.
+const JUMP: f64 = 0.02;
 /// Times of settling before anything is said.
 const SETTLED: f64 = 10.0;
 
@@ -114,6 +117,14 @@ impl FlowZone {
         }
         let share = step.clock.dt / self.settling;
         let deviation = self.driven * sum.deviation / sum.weight;
+        if step.clock.step == 1 && deviation.length() > JUMP * self.sound {
+            step.warnings.push(format!(
+                "the flow in a `{NAME}` starts {} off its velocity, which sends out a sound wave that changes the density by {:.0} %: start with that velocity, by an `InitialVelocity` or the \
+                 `velocity` of the body, or let it grow slowly",
+                quantity_to(deviation.length(), "m/s", 2),
+                100.0 * deviation.length() / self.sound
+            ));
+        }
         state.force += self.rate * share * deviation;
         state.deviation += share.min(1.0) * (deviation - state.deviation);
         let (deviation, speed) = (state.deviation.length(), sum.speed / sum.weight);
