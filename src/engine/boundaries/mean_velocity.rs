@@ -6,7 +6,7 @@
 //! u(n)) / (k^2 dt) - 2 (u(n) - u(n-1)) / (k dt))`: deviations decay like those of a critically damped
 //! oscillator, within some k steps.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 use glam::DVec3;
 use schemars::JsonSchema;
@@ -28,7 +28,8 @@ use crate::world::{BodyId, BodySet, Mass, ReferenceVolume, Removed, Velocity};
 /// A suspension in a periodic channel: `MeanVelocity(bodies: ["water", "grain*"], value: (1.0, None))`. A
 /// body in the flow that is not among `bodies` does not feel this gradient: the drag that a probe shows lacks
 /// the power of that account over the velocity, times the share of the body in the volume of the flow (2 to
-/// 4 % of the drag of cylinders in channels).
+/// 4 % of the drag of cylinders in channels). A channel that is not part of a repeating array has an inlet
+/// and an outlet: `RelaxationZone`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeanVelocity {
@@ -107,9 +108,10 @@ impl MeanVelocity {
         let mut driven: Driven = sim.take_extensions().pop().unwrap_or_default();
         for (id, _) in &selection.parts {
             for axis in (0..3).filter(|&axis| self.value.0[axis].is_some()) {
-                if !driven.0.insert((*id, axis)) {
+                if let Err(other) = driven.take((*id, axis), Self::NAME, false) {
                     let (body, along) = (&sim.body(*id).name, ["x", "y", "z"][axis]);
-                    let message = format!("body `{body}` has two mean velocities along {along}");
+                    let message =
+                        format!("body `{body}` has a mean velocity along {along} already, by a `{other}`");
                     let help = "leave the axis or the body to one of them";
                     return Err(SetupError::parameter("bodies", message, help));
                 }
@@ -138,9 +140,23 @@ impl MeanVelocity {
     }
 }
 
-/// Bodies and axes that have a mean velocity already.
+/// Conditions that keep the mean velocity of a body along an axis.
 #[derive(Default)]
-struct Driven(BTreeSet<(BodyId, usize)>);
+pub(super) struct Driven(BTreeMap<(BodyId, usize), &'static str>);
+
+impl Driven {
+    /// Takes the mean velocity of a body along an axis for a condition; several of one kind may share it if
+    /// `shares`.
+    ///
+    /// # Errors
+    /// It is taken: the condition that has it.
+    pub fn take(&mut self, of: (BodyId, usize), by: &'static str, shares: bool) -> Result<(), &'static str> {
+        match self.0.insert(of, by) {
+            Some(other) if !(shares && other == by) => Err(other),
+            _ => Ok(()),
+        }
+    }
+}
 
 /// The part that a checkpoint keeps.
 #[derive(Clone, Copy, Default, Serialize, Deserialize)]

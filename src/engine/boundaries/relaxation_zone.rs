@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::field::VectorField;
+use super::mean_velocity::Driven;
 use super::zone_box::ZoneBox;
 use super::zone_flow::{ACCOUNT, FlowZone, FlowZones, NAME, ZoneFlow};
 use crate::notation::{place as words, quantity, quantity_to};
@@ -31,19 +32,21 @@ use crate::world::{BodySet, Mass, Mobility, Position, Velocity};
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RelaxationZone {
-    /// Fluid; `"water*"` stands for all whose names begin with `water`. Default: all fluids.
+    /// Fluid; `"water*"` stands for all whose names begin with `water`. Without it: all fluids.
+    #[serde(default)]
     pub body: Option<String>,
     /// Corner of the box with the smallest coordinates \[m\].
     pub min: Vec3,
     /// Corner of the box with the largest coordinates \[m\].
     pub max: Vec3,
-    /// Direction in which the zone grows stronger, of any length \[-\]: that of the flow between an outlet
-    /// and an inlet, the one towards the end of a tank of waves.
+    /// Direction in which the zone grows stronger, of any length \[-\]: downstream between an outlet and an
+    /// inlet, towards the end of a tank of waves.
     pub along: Vec3,
     /// Velocity per axis \[m/s\], a function of place and time; `None` leaves an axis free.
     pub value: PerAxis<Expression>,
-    /// Rate at the end of the zone \[1/s\]. Default along a periodic axis: 6 c_0 over the length of the zone.
-    /// For waves 6 times their celerity over that length.
+    /// Rate at the end of the zone \[1/s\]. Without it, along a periodic axis: 6 c_0 over the length of the
+    /// zone. For waves 6 times their celerity over that length.
+    #[serde(default)]
     pub rate: Option<f64>,
 }
 
@@ -69,6 +72,7 @@ impl Plugin for RelaxationZone {
 
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         let zone = self.zone(sim)?;
+        take_mean_velocities(&zone, sim)?;
         warnings(&zone, sim).into_iter().for_each(|warning| sim.warn(warning));
         let bodies = BodySet::new(zone.bodies.iter().copied());
         if let Some(zones) = sim.take_extensions::<Shared<FlowZones>>().pop() {
@@ -102,7 +106,7 @@ impl RelaxationZone {
         let sound = bodies.iter().filter_map(|body| body.material.sound_speed()).fold(0.0, f64::max);
         let default = (0..dimensions).any(|axis| place.repeats(axis)).then_some(RATE * sound / place.length);
         let Some(rate) = self.rate.or(default) else {
-            let help = "give the rate of decay at the end of the zone; waves are absorbed best at some 6 times their celerity over the length of the zone";
+            let help = "`along` is not along a periodic axis, so that the zone is no outlet and inlet; for waves give the rate of decay at the end of the zone: they are absorbed best at some 6 times their celerity over the length of the zone";
             return Err(SetupError::parameter("rate", "`rate` is missing", help));
         };
         if !(rate > 0.0 && rate.is_finite()) {
@@ -124,6 +128,7 @@ impl RelaxationZone {
         let given = field.axes();
         Ok(FlowZone {
             bodies: bodies.iter().map(|body| body.id).collect(),
+            mass: bodies.iter().map(|body| mass(body)).sum(),
             axes: flags(given),
             field,
             rate,
@@ -159,6 +164,29 @@ impl RelaxationZone {
     }
 }
 
+/// A zone and a `MeanVelocity` along one axis would drive the fluid against each other.
+fn take_mean_velocities(zone: &FlowZone, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+    let mut driven: Driven = sim.take_extensions().pop().unwrap_or_default();
+    for &body in &zone.bodies {
+        for axis in (0..3).filter(|&axis| zone.driven[axis] != 0.0) {
+            if let Err(other) = driven.take((body, axis), NAME, true) {
+                let (name, along) = (&sim.body(body).name, ["x", "y", "z"][axis]);
+                let message =
+                    format!("body `{name}` has a mean velocity along {along} already, by a `{other}`");
+                let help = "leave the axis or the body to one of them";
+                return Err(SetupError::parameter("value", message, help));
+            }
+        }
+    }
+    sim.leave_note(driven);
+    Ok(())
+}
+
+/// Mass of a fluid at the start, kg.
+fn mass(body: &BodyPlan) -> f64 {
+    body.material.density * body.sites.iter().map(|site| site.volume).sum::<f64>()
+}
+
 /// Warnings of a zone that is empty or short, or that the fluid can flow past.
 fn warnings(zone: &FlowZone, sim: &SimBuilder<'_>) -> Vec<String> {
     let mut warnings = Vec::new();
@@ -181,40 +209,54 @@ fn warnings(zone: &FlowZone, sim: &SimBuilder<'_>) -> Vec<String> {
             words(site)
         ));
     }
-    warnings.extend(too_fast(zone, sites(), sim));
+    if let Some(axis) = (0..3).find(|&axis| zone.place.repeats(axis) && zone.axes[axis] == 0.0) {
+        let along = ["x", "y", "z"][axis];
+        warnings.push(format!(
+            "a `{NAME}` closes the period along {along}, but its `value` leaves {along} free: nothing holds the flux"
+        ));
+    }
+    warnings.extend(of_flow(zone, sites(), sim));
     warnings
 }
 
-/// A warning of a mean velocity along a period that changes faster than sound can follow: the whole column of
-/// fluid has to take part in it.
-fn too_fast(zone: &FlowZone, sites: impl Iterator<Item = DVec3>, sim: &SimBuilder<'_>) -> Option<String> {
+/// Warnings of a mean velocity along a period that is against the direction of the zone, or that changes
+/// faster than sound can follow: the whole column of fluid has to take part in it.
+fn of_flow(zone: &FlowZone, sites: impl Iterator<Item = DVec3>, sim: &SimBuilder<'_>) -> Vec<String> {
     let inside: Vec<(f64, DVec3)> = sites
         .map(|site| (zone.place.strength(site), zone.place.image(site)))
         .filter(|(strength, _)| *strength > 0.0)
         .collect();
     let weight = inside.iter().map(|(strength, _)| strength).sum::<f64>();
-    if weight == 0.0 || !zone.field.depends_on_time() {
-        return None;
+    if weight == 0.0 || zone.driven == DVec3::ZERO {
+        return Vec::new();
     }
     let mean = |time: f64| {
         let values =
             inside.iter().map(|&(strength, site)| strength * zone.driven * zone.field.at(site, time));
         values.sum::<DVec3>() / weight
     };
-    let step = sim.scene().time.end / TIMES as f64;
-    let means: Vec<DVec3> = (0..=TIMES).map(|k| mean(k as f64 * step)).collect();
+    let times = if zone.field.depends_on_time() { TIMES } else { 1 };
+    let step = sim.scene().time.end / times as f64;
+    let means: Vec<DVec3> = (0..=times).map(|k| mean(k as f64 * step)).collect();
+    let mut warnings = Vec::new();
+    let forward = means.iter().sum::<DVec3>().dot(zone.place.along);
+    if forward < 0.0 {
+        warnings.push(format!(
+            "the velocity of a `{NAME}` is against `along`: the zone is strongest where the flow enters it, and weakest at the inlet of the domain; turn `along` around"
+        ));
+    }
     let rate = means.windows(2).map(|pair| pair[0].distance(pair[1]) / step).fold(0.0, f64::max);
     let length = zone.place.period();
     let compression = rate * length / (zone.sound * zone.sound);
-    (compression > COMPRESSED).then(|| {
-        format!(
-            "the velocity of a `{}` changes by up to {}: the acceleration of all fluid along the period of {} compresses it by some {:.0} %; let the velocity change {:.0} times as slowly, \
+    if compression > COMPRESSED {
+        warnings.push(format!(
+            "the velocity of a `{NAME}` changes by up to {}: the acceleration of all fluid along the period of {} compresses it by some {:.0} %; let the velocity change {:.0} times as slowly, \
              or start with it, by an `InitialVelocity`",
-            NAME,
             quantity_to(rate, "m/s2", 2),
             quantity(length, "m"),
             100.0 * compression,
             (compression / COMPRESSED).ceil()
-        )
-    })
+        ));
+    }
+    warnings
 }

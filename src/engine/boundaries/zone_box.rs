@@ -22,11 +22,14 @@ pub(super) struct ZoneBox {
     periodic: Periodic,
 }
 
+/// Distance over a period by which a box may miss the end of the domain, for rounding.
+const NEAR: f64 = 1e-9;
+
 impl ZoneBox {
     /// The box between two corners, m, which grows stronger in the direction of `along`, of any length.
     ///
     /// # Errors
-    /// The box has no content, or the direction is zero.
+    /// The box has no content or reaches past the ends of the period, or the direction is zero.
     pub fn new(
         [low, high]: [DVec3; 2],
         along: DVec3,
@@ -39,10 +42,26 @@ impl ZoneBox {
                 format!("`max` must exceed `min` on every axis, found {} and {}", place(high), place(low));
             return Err(SetupError::parameter("max", message, "they are opposite corners of a box"));
         }
-        let Some(along) = along.try_normalize() else {
+        let in_scene =
+            DVec3::from_array([0, 1, 2].map(|axis| if axis < dimensions { along[axis] } else { 0.0 }));
+        let Some(along) = in_scene.try_normalize() else {
             let help = "give the direction of the flow, such as `(1, 0)`";
             return Err(SetupError::parameter("along", "`along` must not be zero", help));
         };
+        let outside = |axis: usize| {
+            let (min, length) = (periodic.min()[axis], periodic.lengths()[axis]);
+            let near = NEAR * length;
+            along[axis] != 0.0 && length > 0.0 && (low[axis] < min - near || high[axis] > min + length + near)
+        };
+        if (0..dimensions).any(outside) {
+            let message = "the box must not reach past the ends of the periodic domain";
+            let help = "move the ends of the domain to those of the zone: it begins at an outlet and ends at an inlet";
+            return Err(SetupError::parameter(
+                if low.cmplt(periodic.min()).any() { "min" } else { "max" },
+                message,
+                help,
+            ));
+        }
         // The corners of the box that are first and last in this direction.
         let ends = (0..dimensions).map(|axis| (along[axis] * low[axis], along[axis] * high[axis]));
         let (start, end) = ends.fold((0.0, 0.0), |(start, end), (a, b)| (start + a.min(b), end + a.max(b)));

@@ -24,6 +24,8 @@ pub(super) struct FlowZone {
     pub bodies: Vec<BodyId>,
     /// Where it is, and how strong.
     pub place: ZoneBox,
+    /// Mass of these fluids at the start, kg.
+    pub mass: f64,
     /// Velocity, m/s, and 1 along the axes that have one, else 0.
     pub field: VectorField,
     pub axes: DVec3,
@@ -40,8 +42,10 @@ pub(super) struct FlowZone {
 /// State of a zone, which a checkpoint keeps.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 struct ZoneState {
-    /// Uniform force per mass, m/s2.
+    /// Uniform force per mass that follows the deviation, m/s2.
     force: DVec3,
+    /// Uniform force per mass that accelerates all of the fluid as the velocity grows, m/s2.
+    growth: DVec3,
     /// Mean deviation of the last times, m/s.
     deviation: DVec3,
 }
@@ -58,6 +62,8 @@ const SETTLED: f64 = 10.0;
 #[derive(Clone, Copy, Default)]
 struct InZone {
     deviation: DVec3,
+    /// Growth of the velocity that is given, m/s2.
+    growth: DVec3,
     speed: f64,
     weight: f64,
     /// Gain of kinetic energy, J.
@@ -67,6 +73,7 @@ struct InZone {
 impl BlockSum for InZone {
     fn add(&mut self, next: &Self) {
         self.deviation += next.deviation;
+        self.growth += next.growth;
         self.speed += next.speed;
         self.weight += next.weight;
         self.energy += next.energy;
@@ -77,6 +84,7 @@ impl FlowZone {
     /// Leads one body for a step that ends at `time`.
     fn lead(&self, body: BodyId, force: DVec3, step: &Step<'_>) -> Result<InZone, StepError> {
         let (dt, time) = (step.clock.dt, step.clock.end());
+        let grows = self.field.depends_on_time();
         let (view, rows) = step.world.body_view(body);
         let (position, mass) = (view.read::<Position>()?, view.read::<Mass>()?);
         let mobility = view.read::<Mobility>()?;
@@ -92,7 +100,9 @@ impl FlowZone {
                 if strength == 0.0 || mobility[k].0 == DVec3::ZERO {
                     continue;
                 }
-                let value = self.field.at(self.place.image(position[k].0), time);
+                let place = self.place.image(position[k].0);
+                let value = self.field.at(place, time);
+                let before = if grows { self.field.at(place, time - dt) } else { value };
                 let deviation = self.axes * (value - v.0);
                 // Exact for any rate: no limit of the time step follows from the zone.
                 let share = -(-self.rate * strength * dt).exp_m1();
@@ -100,6 +110,7 @@ impl FlowZone {
                 let (m, weight) = (mass[k].0, mass[k].0 * strength);
                 sum.add(&InZone {
                     deviation: weight * deviation,
+                    growth: weight / dt * (value - before),
                     speed: weight * (self.axes * value).length(),
                     weight,
                     energy: 0.5 * m * (next.length_squared() - v.0.length_squared()),
@@ -126,10 +137,12 @@ impl FlowZone {
             ));
         }
         state.force += self.rate * share * deviation;
+        // The force on the zone moves the whole column of fluid.
+        state.growth = self.driven * sum.growth / sum.weight * (self.mass / sum.weight);
         state.deviation += share.min(1.0) * (deviation - state.deviation);
         let (deviation, speed) = (state.deviation.length(), sum.speed / sum.weight);
         if step.clock.end() > SETTLED * self.settling && deviation > DEVIATES * speed && speed > 0.0 {
-            let begin = format!("a `{}` does not hold its velocity", NAME);
+            let begin = format!("a `{NAME}` does not hold its velocity");
             let text = format!(
                 "{begin}: its mean deviates by {} from {} at {}; does the flow that it asks for fit through the rest of the domain?",
                 quantity_to(deviation, "m/s", 2),
@@ -163,7 +176,7 @@ impl Run for ZoneFlow {
         for (zone, state) in zones.iter().zip(&mut self.states) {
             let mut all = InZone::default();
             for &body in &zone.bodies {
-                let sum = zone.lead(body, state.force, step)?;
+                let sum = zone.lead(body, state.force + state.growth, step)?;
                 step.ledger.add(kinetic, body, sum.energy);
                 step.ledger.add(supplied, body, sum.energy);
                 all.add(&sum);

@@ -161,6 +161,8 @@ fn what_cannot_work_is_an_error_or_a_warning_at_check() {
     for (odd, message) in [
         ("min: (-0.2, 0.2), max: (0, 0.3), along: (1, 0), value: (0.1, 0)", "no fluid is in the"),
         ("min: (-0.2, 0), max: (-0.15, 0.1), along: (1, 0), value: (0.1, 0)", "less than 10 spacings"),
+        ("min: (-0.2, 0), max: (0, 0.1), along: (-1, 0), value: (0.1, 0)", "is against `along`"),
+        ("min: (-0.2, 0), max: (0, 0.1), along: (1, 0), value: (None, 0)", "nothing holds the flux"),
         ("min: (-0.2, 0), max: (0, 0.08), along: (1, 0), value: (0.1, 0)", "can flow past the zone"),
         (
             "min: (-0.2, 0), max: (0, 0.1), along: (1, 0), value: (\"0.1*smoothstep(10*t)\", 0)",
@@ -170,4 +172,38 @@ fn what_cannot_work_is_an_error_or_a_warning_at_check() {
         let sim = simulation(&whole.replace(zone, odd));
         assert!(sim.warnings().iter().any(|text| text.contains(message)), "{odd}\n{:?}", sim.warnings());
     }
+    let twice =
+        whole.replace("conditions: [", r#"conditions: [MeanVelocity(bodies: ["oil"], value: (0.1, None)), "#);
+    let error = build_text(&twice).err().unwrap_or_default();
+    assert!(error.contains("has a mean velocity along x already, by a `MeanVelocity`"), "{error}");
+}
+
+/// A column of liquid without friction that swings by a third of its mean velocity, in twelve times the time of
+/// sound through the period.
+#[test]
+fn a_flux_follows_one_that_pulsates() {
+    let value = "0.1*(1 + 0.3*sin(2*pi*t/1.2))";
+    let mut sim = simulation(&format!(
+        r#"(dimension: Two, domain: (min: (-0.2, -1), max: (0.4, 1), periodic: [X]),
+            materials: {{"oil": Fluid(density: 1000, sound_speed: 6)}},
+            bodies: [(name: "oil", material: "oil", spacing: 0.01, formulation: Fluid(pressure: 40), velocity: (0.1, 0),
+                      shape: Box(min: (-0.2, 0), max: (0.4, 0.1))),
+                     (name: "walls", material: "none", spacing: 0.01, formulation: Wall(slip: Free, suction: true),
+                      shape: Union([Box(min: (-0.2, -0.04), max: (0.4, 0)), Box(min: (-0.2, 0.1), max: (0.4, 0.14))]))],
+            conditions: [RelaxationZone(min: (-0.2, 0), max: (0, 0.1), along: (1, 0), value: ("{value}", 0))],
+            time: (end: 3.6))"#
+    ));
+    let (mut sine, mut cosine, mut time) = (0.0, 0.0, 0.0);
+    sim.run(|sim| {
+        let (dt, t) = (sim.clock().dt, sim.clock().time);
+        if t > 1.2 {
+            let (phase, flow) = (2.0 * std::f64::consts::PI * t / 1.2, flow(sim).1.x);
+            (sine, cosine, time) =
+                (sine + dt * flow * phase.sin(), cosine + dt * flow * phase.cos(), time + dt);
+        }
+        true
+    })
+    .unwrap();
+    let (sine, cosine) = (2.0 * sine / time / 0.03, 2.0 * cosine / time / 0.03);
+    assert!((sine - 1.0).abs() < 0.05 && cosine.abs() < 0.1, "{sine} {cosine}");
 }
