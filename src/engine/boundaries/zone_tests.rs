@@ -178,8 +178,8 @@ fn what_cannot_work_is_an_error_or_a_warning_at_check() {
     assert!(error.contains("has a mean velocity along x already, by a `MeanVelocity`"), "{error}");
 }
 
-/// A column of liquid without friction that swings by a third of its mean velocity, in twelve times the time of
-/// sound through the period.
+/// A column of liquid without friction whose velocity swings by a third of its mean, in twelve times the time
+/// of sound through the period.
 #[test]
 fn a_flux_follows_one_that_pulsates() {
     let value = "0.1*(1 + 0.3*sin(2*pi*t/1.2))";
