@@ -105,20 +105,10 @@ impl MeanVelocity {
 
     /// Two mean velocities of one body along one axis would drive it against each other.
     fn only_once(&self, selection: &Selection, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
-        let mut driven: Driven = sim.take_extensions().pop().unwrap_or_default();
-        for (id, _) in &selection.parts {
-            for axis in (0..3).filter(|&axis| self.value.0[axis].is_some()) {
-                if let Err(other) = driven.take((*id, axis), Self::NAME, false) {
-                    let (body, along) = (&sim.body(*id).name, ["x", "y", "z"][axis]);
-                    let message =
-                        format!("body `{body}` has a mean velocity along {along} already, by a `{other}`");
-                    let help = "leave the axis or the body to one of them";
-                    return Err(SetupError::parameter("bodies", message, help));
-                }
-            }
-        }
-        sim.leave_note(driven);
-        Ok(())
+        let bodies = selection.parts.iter().map(|(id, _)| *id);
+        let axes: Vec<usize> = (0..3).filter(|&axis| self.value.0[axis].is_some()).collect();
+        let all = bodies.flat_map(|id| axes.iter().map(move |&axis| (id, axis)));
+        take_mean_velocities(all, Self::NAME, "bodies", sim)
     }
 
     fn wanted(&self, sim: &SimBuilder<'_>) -> Result<DVec3, SetupError> {
@@ -142,20 +132,30 @@ impl MeanVelocity {
 
 /// Conditions that keep the mean velocity of a body along an axis.
 #[derive(Default)]
-pub(super) struct Driven(BTreeMap<(BodyId, usize), &'static str>);
+struct Driven(BTreeMap<(BodyId, usize), &'static str>);
 
-impl Driven {
-    /// Takes the mean velocity of a body along an axis for a condition; several of one kind may share it if
-    /// `shares`.
-    ///
-    /// # Errors
-    /// It is taken: the condition that has it.
-    pub fn take(&mut self, of: (BodyId, usize), by: &'static str, shares: bool) -> Result<(), &'static str> {
-        match self.0.insert(of, by) {
-            Some(other) if !(shares && other == by) => Err(other),
-            _ => Ok(()),
+/// Takes the mean velocities of bodies along axes for a condition `by`; `field` is its parameter, for errors.
+///
+/// # Errors
+/// One of them is taken. Several zones may lead one flow.
+pub(super) fn take_mean_velocities(
+    all: impl Iterator<Item = (BodyId, usize)>,
+    by: &'static str,
+    field: &str,
+    sim: &mut SimBuilder<'_>,
+) -> Result<(), SetupError> {
+    let mut driven: Driven = sim.take_extensions().pop().unwrap_or_default();
+    for (id, axis) in all {
+        let taken = driven.0.insert((id, axis), by);
+        if let Some(other) = taken.filter(|other| *other == MeanVelocity::NAME || by == MeanVelocity::NAME) {
+            let (body, along) = (&sim.body(id).name, ["x", "y", "z"][axis]);
+            let message = format!("body `{body}` has a mean velocity along {along} already, by a `{other}`");
+            let help = "leave the axis or the body to one of them";
+            return Err(SetupError::parameter(field, message, help));
         }
     }
+    sim.leave_note(driven);
+    Ok(())
 }
 
 /// The part that a checkpoint keeps.

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::field::VectorField;
-use super::mean_velocity::Driven;
+use super::mean_velocity::take_mean_velocities;
 use super::zone_box::ZoneBox;
 use super::zone_flow::{ACCOUNT, FlowZone, FlowZones, NAME, ZoneFlow};
 use crate::notation::{place as words, quantity, quantity_to};
@@ -72,7 +72,9 @@ impl Plugin for RelaxationZone {
 
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         let zone = self.zone(sim)?;
-        take_mean_velocities(&zone, sim)?;
+        let axes: Vec<usize> = (0..3).filter(|&axis| zone.driven[axis] != 0.0).collect();
+        let driven = zone.bodies.iter().flat_map(|&id| axes.iter().map(move |&axis| (id, axis)));
+        take_mean_velocities(driven, NAME, "value", sim)?;
         warnings(&zone, sim).into_iter().for_each(|warning| sim.warn(warning));
         let bodies = BodySet::new(zone.bodies.iter().copied());
         if let Some(zones) = sim.take_extensions::<Shared<FlowZones>>().pop() {
@@ -162,24 +164,6 @@ impl RelaxationZone {
             }
         }
     }
-}
-
-/// A zone and a `MeanVelocity` along one axis would drive the fluid against each other.
-fn take_mean_velocities(zone: &FlowZone, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
-    let mut driven: Driven = sim.take_extensions().pop().unwrap_or_default();
-    for &body in &zone.bodies {
-        for axis in (0..3).filter(|&axis| zone.driven[axis] != 0.0) {
-            if let Err(other) = driven.take((body, axis), NAME, true) {
-                let (name, along) = (&sim.body(body).name, ["x", "y", "z"][axis]);
-                let message =
-                    format!("body `{name}` has a mean velocity along {along} already, by a `{other}`");
-                let help = "leave the axis or the body to one of them";
-                return Err(SetupError::parameter("value", message, help));
-            }
-        }
-    }
-    sim.leave_note(driven);
-    Ok(())
 }
 
 /// Mass of a fluid at the start, kg.

@@ -48,19 +48,14 @@ impl ZoneBox {
             let help = "give the direction of the flow, such as `(1, 0)`";
             return Err(SetupError::parameter("along", "`along` must not be zero", help));
         };
-        let outside = |axis: usize| {
+        for axis in (0..dimensions).filter(|&axis| periodic.axes()[axis] && along[axis] != 0.0) {
             let (min, length) = (periodic.min()[axis], periodic.lengths()[axis]);
-            let near = NEAR * length;
-            along[axis] != 0.0 && length > 0.0 && (low[axis] < min - near || high[axis] > min + length + near)
-        };
-        if (0..dimensions).any(outside) {
-            let message = "the box must not reach past the ends of the periodic domain";
-            let help = "move the ends of the domain to those of the zone: it begins at an outlet and ends at an inlet";
-            return Err(SetupError::parameter(
-                if low.cmplt(periodic.min()).any() { "min" } else { "max" },
-                message,
-                help,
-            ));
+            let (before, after) = (low[axis] < min - NEAR * length, high[axis] > min + (1.0 + NEAR) * length);
+            if before || after {
+                let message = "the box must not reach past the ends of the periodic domain";
+                let help = "move the ends of the domain to those of the zone: it begins at an outlet and ends at an inlet";
+                return Err(SetupError::parameter(if before { "min" } else { "max" }, message, help));
+            }
         }
         // The corners of the box that are first and last in this direction.
         let ends = (0..dimensions).map(|axis| (along[axis] * low[axis], along[axis] * high[axis]));

@@ -121,8 +121,13 @@ impl FlowZone {
         }))
     }
 
-    /// Adjusts the uniform force after a step.
-    fn adjust(&self, state: &mut ZoneState, sum: &InZone, step: &mut Step<'_>) {
+    /// Whether both move one column of fluid along one axis.
+    fn moves_with(&self, other: &Self) -> bool {
+        self.driven.dot(other.driven) > 0.0 && self.bodies.iter().any(|body| other.bodies.contains(body))
+    }
+
+    /// Adjusts the uniform force after a step; the zone moves a share of the column of fluid.
+    fn adjust(&self, state: &mut ZoneState, sum: &InZone, share_of_column: f64, step: &mut Step<'_>) {
         if sum.weight == 0.0 || self.driven == DVec3::ZERO {
             return;
         }
@@ -138,7 +143,7 @@ impl FlowZone {
         }
         state.force += self.rate * share * deviation;
         // The force on the zone moves the whole column of fluid.
-        state.growth = self.driven * sum.growth / sum.weight * (self.mass / sum.weight);
+        state.growth = self.driven * sum.growth / sum.weight * (share_of_column * self.mass / sum.weight);
         state.deviation += share.min(1.0) * (deviation - state.deviation);
         let (deviation, speed) = (state.deviation.length(), sum.speed / sum.weight);
         if step.clock.end() > SETTLED * self.settling && deviation > DEVIATES * speed && speed > 0.0 {
@@ -181,7 +186,8 @@ impl Run for ZoneFlow {
                 step.ledger.add(supplied, body, sum.energy);
                 all.add(&sum);
             }
-            zone.adjust(state, &all, step);
+            let sharing = zones.iter().filter(|other| other.moves_with(zone)).count();
+            zone.adjust(state, &all, 1.0 / sharing.max(1) as f64, step);
         }
         Ok(())
     }

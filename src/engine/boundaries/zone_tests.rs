@@ -182,7 +182,17 @@ fn what_cannot_work_is_an_error_or_a_warning_at_check() {
 /// of sound through the period.
 #[test]
 fn a_flux_follows_one_that_pulsates() {
-    let value = "0.1*(1 + 0.3*sin(2*pi*t/1.2))";
+    let zone = |from: f64, to: f64| {
+        let value = "0.1*(1 + 0.3*sin(2*pi*t/1.2))";
+        format!(
+            r#"RelaxationZone(min: ({from}, 0), max: ({to}, 0.1), along: (1, 0), value: ("{value}", 0)),"#
+        )
+    };
+    assert_follows(&zone(-0.2, 0.0));
+    assert_follows(&(zone(-0.2, 0.0) + &zone(0.0, 0.2)));
+}
+
+fn assert_follows(zones: &str) {
     let mut sim = simulation(&format!(
         r#"(dimension: Two, domain: (min: (-0.2, -1), max: (0.4, 1), periodic: [X]),
             materials: {{"oil": Fluid(density: 1000, sound_speed: 6)}},
@@ -190,7 +200,7 @@ fn a_flux_follows_one_that_pulsates() {
                       shape: Box(min: (-0.2, 0), max: (0.4, 0.1))),
                      (name: "walls", material: "none", spacing: 0.01, formulation: Wall(slip: Free, suction: true),
                       shape: Union([Box(min: (-0.2, -0.04), max: (0.4, 0)), Box(min: (-0.2, 0.1), max: (0.4, 0.14))]))],
-            conditions: [RelaxationZone(min: (-0.2, 0), max: (0, 0.1), along: (1, 0), value: ("{value}", 0))],
+            conditions: [{zones}],
             time: (end: 3.6))"#
     ));
     let (mut sine, mut cosine, mut time) = (0.0, 0.0, 0.0);
