@@ -9,6 +9,9 @@ use meshless_engine::parallel::{Arithmetic, Vector};
 
 /// Strength of the part that keeps close particles apart, with the fourth power of their kernel.
 const CLOSE: f64 = 0.2;
+/// Least kernel over that at the spacing: one plus its fourth power is one. Smaller powers would be denormal
+/// numbers, which take some processors a hundred cycles each.
+const FAR: f64 = 1e-5;
 
 /// The neighbourhood of a particle.
 #[derive(Clone, Copy, Debug, Default)]
@@ -64,7 +67,7 @@ impl RowPass<1, 9> for Locals<'_> {
         [xx, yy, zz, first_moment, toward_walls, along_x, along_y, along_z, filled]: &mut [Vector<A>; 9],
     ) {
         let weight = near.volume * near.weight;
-        let close = (near.kernel * self.usual).squared().squared();
+        let close = (near.kernel * self.usual).max(FAR).squared().squared();
         add_moment([xx, yy, zz], weight, near.x_ij);
         *first_moment = near.x_ij.mul_add(weight * (1.0 + CLOSE * close), *first_moment);
         filled.x += near.volume * near.kernel;
