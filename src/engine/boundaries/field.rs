@@ -121,13 +121,17 @@ impl VectorField {
         if bad.0 == 0 {
             return Ok(());
         }
-        let (point, value) = (points[bad.0 - 1], out[bad.0 - 1]);
-        let message = format!(
-            "the value must be finite, found {} at the place {} m and {}",
-            place(value),
-            place(point),
-            quantity(t, "s")
-        );
-        Err(StepError::System { system: by.to_owned(), message })
+        Err(not_finite(points[bad.0 - 1], out[bad.0 - 1], t, by))
     }
+}
+
+/// The error of a value that is not finite at a place and time; `by` names the condition.
+pub(super) fn not_finite(point: DVec3, value: DVec3, t: f64, by: &str) -> StepError {
+    let message = format!(
+        "the value must be finite, found {} at the place {} m and {}",
+        place(value),
+        place(point),
+        quantity(t, "s")
+    );
+    StepError::System { system: by.to_owned(), message }
 }

@@ -47,6 +47,7 @@ mod turning;
 mod turning_tests;
 mod velocity;
 mod zone_box;
+mod zone_checks;
 mod zone_flow;
 #[cfg(test)]
 mod zone_tests;

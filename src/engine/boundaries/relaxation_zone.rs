@@ -7,8 +7,9 @@ use serde::Deserialize;
 use super::field::VectorField;
 use super::mean_velocity::take_mean_velocities;
 use super::zone_box::ZoneBox;
+use super::zone_checks::warnings;
 use super::zone_flow::{ACCOUNT, FlowZone, FlowZones, NAME, ZoneFlow};
-use crate::notation::{place as words, quantity, quantity_to};
+use crate::notation::place as words;
 use crate::plugin::{BodyKind, BodyPlan, Plugin, SetupError, SimBuilder};
 use crate::scene::{Expression, PerAxis, Select, Vec3};
 use crate::schedule::{Shared, Stage, System};
@@ -58,13 +59,6 @@ const RATE: f64 = 6.0;
 /// Time within which the uniform force follows, over that in which sound crosses the period: with it the flux
 /// of an incompressible flow settles like an oscillator with 0.7 of the critical damping.
 const SETTLING: f64 = 1.0;
-/// Length of a zone below which it is warned of, in spacings.
-const SHORT: f64 = 10.0;
-/// Change of density by the acceleration of a column of fluid that is worth a warning, and the number of
-/// intervals of the run in which it is looked for.
-const COMPRESSED: f64 = 0.02;
-const TIMES: usize = 200;
-
 impl Plugin for RelaxationZone {
     const NAME: &'static str = NAME;
     const REFERENCE: &'static str =
@@ -169,78 +163,4 @@ impl RelaxationZone {
 /// Mass of a fluid at the start, kg.
 fn mass(body: &BodyPlan) -> f64 {
     body.material.density * body.sites.iter().map(|site| site.volume).sum::<f64>()
-}
-
-/// Warnings of a zone that is empty or short, or that the fluid can flow past.
-fn warnings(zone: &FlowZone, sim: &SimBuilder<'_>) -> Vec<String> {
-    let mut warnings = Vec::new();
-    let bodies: Vec<&BodyPlan> = zone.bodies.iter().map(|id| sim.body(*id)).collect();
-    let sites = || bodies.iter().flat_map(|body| body.sites.iter()).map(|site| site.position);
-    if !sites().any(|site| zone.place.contains(site)) {
-        warnings.push(format!("no fluid is in the `{NAME}` {} at the start", zone.place.words()));
-    }
-    let spacing = bodies.iter().map(|body| body.spacing).fold(0.0, f64::max);
-    if zone.place.length < SHORT * spacing {
-        warnings.push(format!(
-            "a `{NAME}` is {} long, less than {SHORT} spacings of its fluid: the flow has no room in it to take the velocity that is given",
-            quantity(zone.place.length, "m")
-        ));
-    }
-    let within = |site: DVec3| (0.0..=1.0).contains(&zone.place.depth(site));
-    if let Some(site) = sites().find(|&site| within(site) && !zone.place.contains(site)) {
-        warnings.push(format!(
-            "the fluid reaches past the sides of a `{NAME}`, such as to {}: it can flow past the zone",
-            words(site)
-        ));
-    }
-    if let Some(axis) = (0..3).find(|&axis| zone.place.repeats(axis) && zone.axes[axis] == 0.0) {
-        let along = ["x", "y", "z"][axis];
-        warnings.push(format!(
-            "a `{NAME}` closes the period along {along}, but its `value` leaves {along} free: nothing holds the flux"
-        ));
-    }
-    warnings.extend(of_flow(zone, sites(), sim));
-    warnings
-}
-
-/// Warnings of a mean velocity along a period that is against the direction of the zone, or that changes
-/// faster than sound can follow: the whole column of fluid has to take part in it.
-fn of_flow(zone: &FlowZone, sites: impl Iterator<Item = DVec3>, sim: &SimBuilder<'_>) -> Vec<String> {
-    let inside: Vec<(f64, DVec3)> = sites
-        .map(|site| (zone.place.strength(site), zone.place.image(site)))
-        .filter(|(strength, _)| *strength > 0.0)
-        .collect();
-    let weight = inside.iter().map(|(strength, _)| strength).sum::<f64>();
-    if weight == 0.0 || zone.driven == DVec3::ZERO {
-        return Vec::new();
-    }
-    let mean = |time: f64| {
-        let values =
-            inside.iter().map(|&(strength, site)| strength * zone.driven * zone.field.at(site, time));
-        values.sum::<DVec3>() / weight
-    };
-    let times = if zone.field.depends_on_time() { TIMES } else { 1 };
-    let step = sim.scene().time.end / times as f64;
-    let means: Vec<DVec3> = (0..=times).map(|k| mean(k as f64 * step)).collect();
-    let mut warnings = Vec::new();
-    let forward = means.iter().sum::<DVec3>().dot(zone.place.along);
-    if forward < 0.0 {
-        warnings.push(format!(
-            "the velocity of a `{NAME}` is against `along`: the zone is strongest where the flow enters it, and weakest at the inlet of the domain; turn `along` around"
-        ));
-    }
-    let rate = means.windows(2).map(|pair| pair[0].distance(pair[1]) / step).fold(0.0, f64::max);
-    let length = zone.place.period();
-    let compression = rate * length / (zone.sound * zone.sound);
-    if compression > COMPRESSED {
-        warnings.push(format!(
-            "the velocity of a `{NAME}` changes by up to {}: the acceleration of all fluid along the period of {} compresses it by some {:.0} %; let the velocity change {:.0} times as slowly, \
-             or start with it, by an `InitialVelocity`",
-            quantity_to(rate, "m/s2", 2),
-            quantity(length, "m"),
-            100.0 * compression,
-            (compression / COMPRESSED).ceil()
-        ));
-    }
-    warnings
 }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::field::VectorField;
+use super::field::{VectorField, not_finite};
 use super::zone_box::ZoneBox;
 use crate::notation::{quantity, quantity_to};
 use crate::parallel::{BlockSum, sum_over_blocks};
@@ -68,6 +68,8 @@ struct InZone {
     weight: f64,
     /// Gain of kinetic energy, J.
     energy: f64,
+    /// The first place at which the velocity that is given is not finite, and the velocity.
+    broken: Option<(DVec3, DVec3)>,
 }
 
 impl BlockSum for InZone {
@@ -77,6 +79,7 @@ impl BlockSum for InZone {
         self.speed += next.speed;
         self.weight += next.weight;
         self.energy += next.energy;
+        self.broken = self.broken.or(next.broken);
     }
 }
 
@@ -92,7 +95,7 @@ impl FlowZone {
         let fixed = (&position[rows.clone()], &mass[rows.clone()], &mobility[rows.clone()]);
         type Rows<'a> = (&'a mut [Velocity], &'a [Position], &'a [Mass], &'a [Mobility]);
         let slices = (&mut velocity[rows], fixed.0, fixed.1, fixed.2);
-        Ok(sum_over_blocks(slices, &|_, (velocity, position, mass, mobility): Rows<'_>| {
+        let sum = sum_over_blocks(slices, &|_, (velocity, position, mass, mobility): Rows<'_>| {
             let mut sum = InZone::default();
             for (k, v) in velocity.iter_mut().enumerate() {
                 let strength = self.place.strength(position[k].0);
@@ -102,6 +105,10 @@ impl FlowZone {
                 }
                 let place = self.place.image(position[k].0);
                 let value = self.field.at(place, time);
+                if !value.is_finite() {
+                    sum.broken = sum.broken.or(Some((place, value)));
+                    continue;
+                }
                 let before = if grows { self.field.at(place, time - dt) } else { value };
                 let deviation = self.axes * (value - v.0);
                 // Exact for any rate: no limit of the time step follows from the zone.
@@ -114,11 +121,16 @@ impl FlowZone {
                     speed: weight * (self.axes * value).length(),
                     weight,
                     energy: 0.5 * m * (next.length_squared() - v.0.length_squared()),
+                    broken: None,
                 });
                 v.0 = next;
             }
             sum
-        }))
+        });
+        match sum.broken {
+            None => Ok(sum),
+            Some((place, value)) => Err(not_finite(place, value, time, NAME)),
+        }
     }
 
     /// Whether both move one column of fluid along one axis.

@@ -108,6 +108,13 @@ fn an_inlet_has_the_flux_and_the_profile_that_are_given_and_every_joule_is_booke
 }
 
 #[test]
+fn a_value_that_ceases_to_be_finite_is_an_error_that_names_the_zone() {
+    let mut sim = simulation(&channel(0.01, r#""sqrt(0.05 - t)""#, "", 0.1));
+    let error = sim.run(|_| true).expect_err("a value without limit").to_string();
+    assert!(error.contains("`RelaxationZone` failed: the value must be finite, found (NaN"), "{error}");
+}
+
+#[test]
 fn a_restart_goes_on_bit_for_bit() {
     let text = channel(0.01, PROFILE, "", 0.3);
     let (mut whole, mut first, mut second) = (simulation(&text), simulation(&text), simulation(&text));
@@ -172,6 +179,13 @@ fn what_cannot_work_is_an_error_or_a_warning_at_check() {
         let sim = simulation(&whole.replace(zone, odd));
         assert!(sim.warnings().iter().any(|text| text.contains(message)), "{odd}\n{:?}", sim.warnings());
     }
+    let bar = "Box(min: (0.1, 0), max: (0.14, 0.03))";
+    // Of the six rows within 3 spacings of the middle of the bar, four lack 0.3, with weights of 1/2 and 5/6.
+    let in_zone = simulation(&whole.replace(bar, "Box(min: (-0.1, 0), max: (-0.06, 0.03))"));
+    let is_uneven = |sim: &Simulation| {
+        sim.warnings().iter().any(|text| text.contains("is 27 % less 120 mm behind its beginning"))
+    };
+    assert!(is_uneven(&in_zone) && !is_uneven(&simulation(&whole)), "{:?}", in_zone.warnings());
     let twice =
         whole.replace("conditions: [", r#"conditions: [MeanVelocity(bodies: ["oil"], value: (0.1, None)), "#);
     let error = build_text(&twice).err().unwrap_or_default();
