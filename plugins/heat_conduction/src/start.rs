@@ -18,11 +18,9 @@ pub(crate) fn add_system(sim: &mut SimBuilder<'_>, conductors: &[Conductor], giv
     let bodies = conductors.iter().map(|of| (of.body, of.has_temperature)).collect();
     let set = BodySet::new(conductors.iter().map(|of| of.body));
     let phases = sim.phases_of(&set);
-    let conducts = |name: &str| set.iter().find(|id| sim.body(*id).name == name);
-    let touching = sim.contact_pairs().filter_map(|(_, contact)| {
-        let (first, second) = &contact.between;
-        Some([conducts(first)?, conducts(second)?]).filter(|[first, second]| first != second)
-    });
+    let conduct =
+        |[first, second]: &[BodyId; 2]| first != second && set.contains(*first) && set.contains(*second);
+    let touching = sim.contact_pairs().map(|(_, pair)| pair).filter(conduct);
     let start = Start { bodies, touching: touching.collect(), given: given.cloned() };
     sim.add_system(
         System::new(Stage::Neighbors, "temperature_at_the_start", start)

@@ -1,7 +1,5 @@
 //! Contact between two bodies.
 
-use std::collections::BTreeSet;
-
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -61,18 +59,18 @@ impl Contact {
         self.between.0 == body || self.between.1 == body
     }
 
-    /// The pairs of names that `between` stands for, each once.
-    pub(super) fn pairs<'s>(&self, bodies: &'s [BodyDescription]) -> Vec<(&'s str, &'s str)> {
-        let named = |name: &str| {
-            bodies.iter().map(|body| &*body.name).filter(|known| is_meant(name, known)).collect()
-        };
-        let (first, second): (Vec<&str>, Vec<&str>) = (named(&self.between.0), named(&self.between.1));
+    /// The pairs of bodies that `between` stands for, by their numbers, each once.
+    pub(super) fn pairs(&self, bodies: &[BodyDescription]) -> Vec<[usize; 2]> {
+        let meant =
+            |name: &str| -> Vec<bool> { bodies.iter().map(|body| is_meant(name, &body.name)).collect() };
+        let (is_first, is_second) = (meant(&self.between.0), meant(&self.between.1));
         let is_itself = self.between.0 == self.between.1 && !self.between.0.ends_with(ANY);
-        let (mut pairs, mut known) = (Vec::new(), BTreeSet::new());
-        for &a in &first {
-            for &b in &second {
-                if (a != b || is_itself) && known.insert((a.min(b), a.max(b))) {
-                    pairs.push((a, b));
+        let mut pairs = Vec::new();
+        for a in (0..bodies.len()).filter(|&a| is_first[a]) {
+            for b in (0..bodies.len()).filter(|&b| is_second[b]) {
+                let came_before = b < a && is_first[b] && is_second[a];
+                if (a != b || is_itself) && !came_before {
+                    pairs.push([a, b]);
                 }
             }
         }

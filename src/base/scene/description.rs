@@ -78,13 +78,12 @@ impl Scene {
         self.plugins.iter().chain(&self.bodies[body].plugins).any(|plugin| plugin.name() == name)
     }
 
-    /// The contacts pair by pair, each with the index of the contact in the scene.
-    pub fn contact_pairs(&self) -> impl Iterator<Item = (usize, Contact)> {
-        self.contacts.iter().enumerate().flat_map(|(k, contact)| {
-            let pairs = contact.pairs(&self.bodies).into_iter();
-            let named = pairs.map(|(a, b)| (a.to_owned(), b.to_owned()));
-            named.map(move |between| (k, Contact { between, ..contact.clone() }))
-        })
+    /// The contacts pair by pair: the number of the contact in the scene, and those of its bodies.
+    pub fn contact_pairs(&self) -> impl Iterator<Item = (usize, [usize; 2])> {
+        let pairs_of = |(k, contact): (usize, &Contact)| {
+            contact.pairs(&self.bodies).into_iter().map(move |pair| (k, pair))
+        };
+        self.contacts.iter().enumerate().flat_map(pairs_of)
     }
 
     /// The values of the parameters.

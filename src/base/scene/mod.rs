@@ -35,7 +35,6 @@ mod syntax;
 mod table;
 mod text_fault;
 mod time;
-mod touching;
 mod tree;
 
 pub use crate::space::{Dimension, Vec3};
@@ -58,7 +57,6 @@ pub use select::{Face, Select, SurfacePart};
 pub use source::Source;
 pub use table::Table;
 pub use time::{StepRule, StopWhen, Time};
-pub use touching::TouchingPairs;
 
 #[cfg(test)]
 mod tests;

@@ -186,12 +186,10 @@ fn falling(sim: &SimBuilder<'_>, driven: &BTreeMap<BodyId, [Option<MotionOfPlace
     if sim.bodies().iter().any(|body| body.kind == BodyKind::Fluid) {
         return BodySet::default();
     }
-    let mut touching: BTreeMap<String, usize> = BTreeMap::new();
-    for (_, contact) in sim.contact_pairs() {
-        *touching.entry(contact.between.0).or_default() += 1;
-        *touching.entry(contact.between.1).or_default() += 1;
-    }
-    let falls = |body: &&BodyPlan| touching.get(&body.name) == Some(&1) && !is_held(sim, driven, body);
+    let touching = sim.touching_pairs();
+    let falls = |body: &&BodyPlan| {
+        matches!(touching.partners(body.id), [other] if *other != body.id) && !is_held(sim, driven, body)
+    };
     BodySet::new(sim.bodies().iter().filter(falls).map(|body| body.id))
 }
 

@@ -5,8 +5,6 @@
 //! nothing dissipates this energy. The contact of round bodies grows gradually, and plastic flow damps the
 //! oscillations of harder impacts.
 
-use std::collections::BTreeMap;
-
 use glam::DVec3;
 
 use super::approach::{Motions, is_known};
@@ -29,12 +27,7 @@ const MIN_COMMON: f64 = 4.0;
 /// Warns of every pair of bodies that have a contact and will meet face to face.
 pub(super) fn warn(sim: &mut SimBuilder<'_>) {
     let motions = Motions::of(sim);
-    let bodies: BTreeMap<&str, &BodyPlan> =
-        sim.bodies().iter().map(|body| (body.name.as_str(), body)).collect();
-    let pairs = sim.contact_pairs().filter_map(|(_, contact)| {
-        let (a, b) = &contact.between;
-        Some([*bodies.get(a.as_str())?, *bodies.get(b.as_str())?])
-    });
+    let pairs = sim.contact_pairs().map(|(_, pair)| pair.map(|body| sim.body(body)));
     let texts: Vec<String> = pairs.filter_map(|pair| text(pair, &motions, sim)).collect();
     texts.into_iter().for_each(|text| sim.warn(text));
 }

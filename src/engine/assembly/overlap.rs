@@ -7,7 +7,7 @@
 //! bodies: particles that stand for them are in no particular place, and two planes of a groove always
 //! overlap.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
 use glam::DVec3;
@@ -15,8 +15,9 @@ use glam::DVec3;
 use crate::neighbors::{Cloud, NeighborList, Periodic, SupportRadii};
 use crate::notation::place;
 use crate::plugin::{BodyKind, BodyPlan, contact_pairs};
-use crate::scene::{Contact, ContactSurface, Problem, Scene};
+use crate::scene::{ContactSurface, Problem, Scene};
 use crate::shapes::Region;
+use crate::world::BodyId;
 
 /// Overlap of surfaces in contact at the start, over the smaller spacing: as deep as the skin of a body may
 /// start in a rigid one.
@@ -27,13 +28,8 @@ const ON_FACE: f64 = 1e-6;
 
 /// One problem for every pair of bodies that overlap. Files of shapes are looked for in `folder`.
 pub(super) fn problems(bodies: &[BodyPlan], scene: &Scene, folder: &Path) -> Vec<Problem> {
-    let numbers: BTreeMap<&str, usize> = bodies.iter().map(|body| (&*body.name, body.id.0)).collect();
-    let between = |(_, contact): (usize, Contact)| {
-        let (a, b) = (numbers.get(&*contact.between.0)?, numbers.get(&*contact.between.1)?);
-        Some(((*a.min(b), *a.max(b)), contact))
-    };
-    let contacts: BTreeMap<(usize, usize), Contact> =
-        contact_pairs(scene, bodies).filter_map(between).collect();
+    let between = |(number, [a, b]): (usize, [BodyId; 2])| ((a.0.min(b.0), a.0.max(b.0)), number);
+    let contacts: HashMap<(usize, usize), usize> = contact_pairs(scene, bodies).map(between).collect();
     let owners: Vec<usize> = bodies.iter().flat_map(|body| vec![body.id.0; body.sites.len()]).collect();
     if bodies.len() < 2 {
         return Vec::new();
@@ -54,7 +50,7 @@ pub(super) fn problems(bodies: &[BodyPlan], scene: &Scene, folder: &Path) -> Vec
                 continue;
             }
             let (first, second) = (&bodies[pair.0], &bodies[pair.1]);
-            let contact = contacts.get(&pair);
+            let contact = contacts.get(&pair).map(|&number| &scene.contacts[number]);
             let is_endless = |body: &BodyPlan| !body.bounds.is_bounded();
             let is_solid = |body: &BodyPlan| matches!(body.kind, BodyKind::Rigid | BodyKind::Solid);
             if (is_endless(first) || is_endless(second)) && is_solid(first) && is_solid(second) {

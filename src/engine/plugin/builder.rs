@@ -1,6 +1,6 @@
 //! The interface of a plugin while a simulation is built.
 
-use std::cell::RefCell;
+use std::cell::{OnceCell, RefCell};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Arc;
@@ -14,6 +14,7 @@ use super::plan::BodyPlan;
 use super::prescription::Prescription;
 use super::selection::{self, Selection};
 use super::setup::{Setup, SetupStep};
+use super::touching_pairs::TouchingPairs;
 use crate::materials::{Law, SolidLaw};
 use crate::neighbors::Periodic;
 use crate::notation::place;
@@ -46,6 +47,8 @@ pub struct SimBuilder<'s> {
     /// Bodies that selections hold.
     pub(crate) held: RefCell<Vec<BodyId>>,
     pub(crate) handed: Contributions,
+    /// The pairs of bodies in contact, once they have been asked for.
+    pub(super) touching: OnceCell<Arc<TouchingPairs>>,
     /// Shared values of systems.
     pub(crate) shared: SharedValues,
 }
@@ -63,6 +66,7 @@ impl<'s> SimBuilder<'s> {
             bodies,
             phases,
             systems: Vec::new(),
+            touching: OnceCell::new(),
             setup: Vec::new(),
             scope: BodySet::default(),
             own_body: None,

@@ -14,6 +14,7 @@ mod scope;
 mod selected_facet;
 mod selection;
 mod setup;
+mod touching_pairs;
 mod traits;
 
 pub use builder::SimBuilder;
@@ -30,4 +31,5 @@ pub use registry::{Entry, EntryKind, Registry};
 pub(crate) use selected_facet::SelectedFacet;
 pub use selection::Selection;
 pub use setup::Setup;
+pub use touching_pairs::TouchingPairs;
 pub use traits::{Formulation, Plugin, Support};

@@ -103,6 +103,11 @@ impl RigidBody {
         self.constraint.drives.iter().any(|drive| drive.axes[axis])
     }
 
+    /// Magnitude of its acceleration by the forces of the last step, m/s2.
+    pub fn last_acceleration(&self) -> f64 {
+        (self.state.force / self.mass).length()
+    }
+
     pub(super) fn new(parts: RigidParts, state: RigidState) -> Self {
         let RigidParts { id, mass, inertia, points, bounding_radius, surface, nodes, constraint } = parts;
         let contact = Wrench::default();

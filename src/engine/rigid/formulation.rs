@@ -14,7 +14,7 @@ use super::systems;
 use crate::integrate::OwnMotion;
 use crate::parallel::sum_over_blocks;
 use crate::plugin::{BodyKind, BodyPlan, Formulation, Offer, Setup, SetupError, SimBuilder};
-use crate::scene::{Contact, Dimension, Vec3};
+use crate::scene::{Dimension, Vec3};
 use crate::shapes::{ByDistance, Shape, Surface};
 use crate::world::{BodyId, BodySet, ColumnSet, Mass, Mobility, Position, Velocity};
 
@@ -94,9 +94,8 @@ impl Formulation for Rigid {
 fn warn_of_held_rotation(id: BodyId, constraint: &Constraint, sim: &mut SimBuilder<'_>) {
     let moves = !constraint.moves_as_prescribed();
     let name = sim.body(id).name.clone();
-    let rubs = |(_, contact): (usize, Contact)| {
-        let (one, other) = &contact.between;
-        contact.friction > 0.0 && [one, other].contains(&&name)
+    let rubs = |(number, pair): (usize, [BodyId; 2])| {
+        sim.scene().contacts[number].friction > 0.0 && pair.contains(&id)
     };
     if constraint.is_held_from_turning() && moves && sim.contact_pairs().any(rubs) {
         sim.warn(format!(
@@ -203,7 +202,7 @@ impl Rigid {
 /// The surface of a body. Where no contact names it, any shape will do.
 fn surface(plan: &BodyPlan, shape: &Shape, sim: &SimBuilder<'_>) -> Result<Box<dyn Surface>, SetupError> {
     let exact = sim.surface(shape, &format!("bodies[{}].shape", plan.id.0));
-    if exact.is_ok() || sim.touching_pairs().names(&plan.name) {
+    if exact.is_ok() || sim.touching_pairs().names(plan.id) {
         return exact;
     }
     match shape.region(sim.dimension(), sim.folder(), "shape") {

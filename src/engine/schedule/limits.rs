@@ -63,7 +63,7 @@ impl TimeStepLimits {
     /// Proposes a limit, dt in s; the text of `by`, such as [`format_args!`] gives, is written only where the
     /// limit is the smallest so far and smaller than those not long ago.
     pub fn propose(&mut self, dt: f64, by: impl Display) {
-        if self.any && self.proposed.dt <= dt {
+        if self.has_below(dt) {
             return;
         }
         self.any = true;
@@ -73,6 +73,12 @@ impl TimeStepLimits {
         if !kept {
             let _ = write!(self.proposed.by, "{by}");
         }
+    }
+
+    /// Whether a limit for this step is at most that, dt in s: proposing it would change nothing.
+    #[inline]
+    pub fn has_below(&self, dt: f64) -> bool {
+        self.any && self.proposed.dt <= dt
     }
 
     /// The smallest limit of this step and of recent ones; none if nothing has been proposed for this step.

@@ -34,14 +34,17 @@ impl MotionBounds {
 
     /// Bounds of the speeds of two bodies in the frame of the first one, whose sum bounds how fast they
     /// approach each other, m/s.
+    #[inline]
     pub fn speeds([first, second]: [Self; 2]) -> [f64; 2] {
         [first.spread, first.velocity.distance(second.velocity) + second.spread]
     }
 
     /// Bound of how fast a body and an image of another approach each other, m/s.
+    #[inline]
     pub fn approach([first, second]: [Self; 2], image: &Map) -> f64 {
         let second = Self { velocity: image.vector(second.velocity), ..second };
-        Self::speeds([first, second]).iter().sum()
+        let [one, other] = Self::speeds([first, second]);
+        one + other
     }
 
     /// Of a body, the shapes of whose particles follow their deformation if it is to `deform`.

@@ -32,7 +32,7 @@ impl NamedPair<'_> {
     }
 
     fn named_before(&self) -> Option<Problem> {
-        let (a, b) = &self.contact.between;
+        let [a, b] = self.bodies.map(|body| &body.name);
         self.is_known.then(|| {
             let message = format!("the contact between `{a}` and `{b}` is given twice");
             self.problem(message, "give each pair of bodies once")
@@ -53,7 +53,7 @@ impl NamedPair<'_> {
 
     /// The problem of a contact whose friction is to heat bodies that have no temperature.
     fn heat_without_temperature(&self) -> Option<Problem> {
-        let (a, b) = &self.contact.between;
+        let [a, b] = self.bodies.map(|body| &body.name);
         (self.contact.friction_heat.is_some() && !self.is_warm).then(|| {
             let message = format!("neither `{a}` nor `{b}` is of a material with a specific heat");
             Problem::at_path(format!("contacts[{}].friction_heat", self.number), message)

@@ -62,7 +62,12 @@ impl ContactStart {
             let place = sides.with(setup.world, setup.resources, &bodies, deep)?;
             Ok(place.map(|place| (what, place)))
         };
-        let Self::Skin(skin, _) = self else { return nodes(&|nodes, tool| sides.inside(nodes, tool)) };
+        let Self::Skin(skin, _) = self else {
+            // Of many bodies nearly all are apart.
+            return nodes(&|nodes, tool| {
+                if sides.gap(nodes, tool) > 0.0 { None } else { sides.inside(nodes, tool) }
+            });
+        };
         let deepest = -SKIN_SHARE * skin.spacing;
         let is_deep = |x: DVec3, tool: &RigidBody| sides.closest(x, tool).signed_distance < deepest;
         let columns = SkinColumns::new(skin, setup.world)?;

@@ -1,6 +1,6 @@
 //! Adds the systems of all contacts of a scene.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeSet, HashSet};
 
 use super::checks::NamedPair;
 use super::pairs::{MakeLaw, Planner};
@@ -9,7 +9,7 @@ use super::start::refuse_bodies_within_others;
 use crate::contact::system;
 use crate::contact::system::{Planned, Touching};
 use crate::plugin::SimBuilder;
-use crate::scene::{Contact, Problem};
+use crate::scene::Problem;
 use crate::world::{BodyId, BodySet};
 
 /// Adds the contacts of the scene.
@@ -18,7 +18,7 @@ use crate::world::{BodyId, BodySet};
 /// Two contacts of one pair, a law whose parameters are wrong, bodies that cannot touch.
 pub fn add_systems(sim: &mut SimBuilder<'_>, make: MakeLaw<'_>) -> Result<(), Vec<Problem>> {
     let planes = sim.mirror_planes();
-    let contacts: Vec<(usize, Contact)> = sim.contact_pairs().collect();
+    let pairs: Vec<(usize, [BodyId; 2])> = sim.contact_pairs().collect();
     let mut planner = Planner {
         sim,
         make,
@@ -30,30 +30,21 @@ pub fn add_systems(sim: &mut SimBuilder<'_>, make: MakeLaw<'_>) -> Result<(), Ve
     let (mut planned, mut problems) = (Planned::default(), Vec::new());
     // The contact of the scene that each pair belongs to.
     let mut numbers = Vec::new();
-    let numbers_of: BTreeMap<&str, usize> =
-        planner.sim.bodies().iter().map(|body| (body.name.as_str(), body.id.0)).collect();
-    // Names of bodies are checked with the scene.
-    let id = |name: &str| BodyId(numbers_of.get(name).copied().unwrap_or(0));
-    let ids = |contact: &Contact| [id(&contact.between.0), id(&contact.between.1)];
-    let is_warm = |body: &BodyId| planner.sim.body(*body).specific_heat().is_some();
-    let warm: BTreeSet<usize> = contacts
-        .iter()
-        .filter(|(_, contact)| ids(contact).iter().any(is_warm))
-        .map(|(number, _)| *number)
-        .collect();
-    let mut known = BTreeSet::new();
-    for (number, contact) in &contacts {
-        let [first, second] = ids(contact);
+    let is_warm = |body: &BodyId| sim.body(*body).specific_heat().is_some();
+    let warm: BTreeSet<usize> =
+        pairs.iter().filter(|(_, pair)| pair.iter().any(is_warm)).map(|(number, _)| *number).collect();
+    let mut known = HashSet::new();
+    for &(number, [first, second]) in &pairs {
         let is_known = !known.insert([first.min(second), first.max(second)]);
-        let bodies = [planner.sim.body(first), planner.sim.body(second)];
-        let named = NamedPair { contact, number: *number, bodies, is_known, is_warm: warm.contains(number) };
+        let (contact, bodies) = (&sim.scene().contacts[number], [first, second].map(|body| sim.body(body)));
+        let named = NamedPair { contact, number, bodies, is_known, is_warm: warm.contains(&number) };
         if let Some(problem) = named.refused() {
             problems.push(problem);
             continue;
         }
         match planner.pairs_of(&named) {
             Ok(pairs) => {
-                numbers.resize(numbers.len() + pairs.len(), *number);
+                numbers.resize(numbers.len() + pairs.len(), number);
                 for (touching, acts) in pairs {
                     planned.touching.push(touching);
                     planned.acts.push(acts);

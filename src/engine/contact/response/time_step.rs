@@ -130,7 +130,7 @@ pub(in crate::contact) fn propose(
 ) -> Result<(), StepError> {
     let &Touches { squared, stored, speed, reach } = touches;
     let world = step.world;
-    let (one, other) = (&world.body(pair[0]).name, &world.body(pair[1]).name);
+    let names = || pair.map(|body| &world.body(body).name);
     if squared > 0.0 {
         // Before the first step a clock has no step.
         let is_loaded = step.clock.dt == 0.0 && {
@@ -138,6 +138,7 @@ pub(in crate::contact) fn propose(
             stored > 0.5 * view.read::<Mass>()?[rows.start].0 * squared * (LOADED * reach).powi(2)
         };
         let share = if is_loaded { OF_LOADED } else { 1.0 };
+        let [one, other] = names();
         step.limits.propose(
             share * FREQUENCY_FACTOR / squared.sqrt(),
             format_args!("stiffness of contact of `{one}` and `{other}`"),
@@ -145,6 +146,11 @@ pub(in crate::contact) fn propose(
     }
     if speed > 0.0 {
         let limit = SWEPT_FACTOR * reach / speed;
+        // Of many bodies most do not matter.
+        if step.limits.has_below(limit) {
+            return Ok(());
+        }
+        let [one, other] = names();
         step.limits.propose(limit, format_args!("speed of approach of `{one}` and `{other}`"));
     }
     Ok(())
@@ -221,6 +227,15 @@ pub(in crate::contact) fn propose_rigid(
     }
 }
 
+/// The limit of two rigid bodies that are apart, for an impact of that squared frequency, 1/s2; s.
+pub(in crate::contact) fn limit_of_impact(squared: f64, dt: f64) -> f64 {
+    if squared > 0.0 {
+        NormalMotion::default().factor(squared.sqrt(), dt) / squared.sqrt()
+    } else {
+        f64::INFINITY
+    }
+}
+
 /// Share of the spacing by which two rigid bodies that may touch may approach in a step, and of the gap
 /// between them.
 const APPROACH_FACTOR: [f64; 2] = [0.1, 0.25];
@@ -233,14 +248,19 @@ pub(in crate::contact) fn propose_approach(
     velocity: DVec3,
     gap: f64,
 ) {
-    let speed = velocity.length();
-    if speed > 0.0 {
-        let (one, other) = (step.world.body(pair[0]), step.world.body(pair[1]));
-        let [of_spacing, of_gap] = APPROACH_FACTOR;
-        let limit = (of_spacing * one.spacing.min(other.spacing) + of_gap * gap) / speed;
+    let (one, other) = (step.world.body(pair[0]), step.world.body(pair[1]));
+    let limit = limit_of_approach(one.spacing.min(other.spacing), gap, velocity.length());
+    if limit.is_finite() {
         let (one, other) = (&one.name, &other.name);
         step.limits.propose(limit, format_args!("speed of approach of `{one}` and `{other}`"));
     }
+}
+
+/// The limit of two rigid bodies of that smaller spacing, m, that approach at `speed`, m/s, over a gap, m; s.
+#[inline]
+pub(in crate::contact) fn limit_of_approach(spacing: f64, gap: f64, speed: f64) -> f64 {
+    let [of_spacing, of_gap] = APPROACH_FACTOR;
+    if speed > 0.0 { (of_spacing * spacing + of_gap * gap) / speed } else { f64::INFINITY }
 }
 
 /// Whether the reference of a body stays.

@@ -318,6 +318,7 @@ impl ReferenceFacets {
 }
 
 /// A bound of how fast points of the skins of two bodies approach each other, m/s.
+#[inline]
 pub(in crate::contact) fn speed_of_points([first, second]: [MotionBounds; 2]) -> f64 {
     first.velocity.distance(second.velocity) + FASTER * (first.spread + second.spread)
 }

@@ -12,8 +12,9 @@ use super::touching::Touching;
 use crate::contact::bodies::MotionBounds;
 use crate::contact::response::time_step::{self, Touches};
 use crate::contact::skins::{gap_of, speed_of_points};
+use crate::contact::tools::SlowImpact;
 use crate::neighbors::Periodic;
-use crate::rigid::RigidBodies;
+use crate::rigid::{RigidBodies, RigidBody};
 use crate::schedule::{Step, StepError};
 use crate::shapes::Aabb;
 use crate::skins::{Skin, SkinColumns};
@@ -35,6 +36,8 @@ pub(super) struct InContact {
     /// Largest radius of particles that touch, m; none if they do not.
     radius: Option<f64>,
     pub motion: MotionBounds,
+    /// Acceleration of a rigid body, m/s2.
+    acceleration: f64,
     /// The box around what touches, if it is known in this step; nothing is around a body without bounds.
     around: Option<Option<Aabb>>,
 }
@@ -65,13 +68,18 @@ impl InContact {
 
     fn new(body: BodyId) -> Self {
         let (skin, vertices, radius) = (None, Vec::new(), None);
-        Self { body, deform: false, skin, vertices, radius, motion: MotionBounds::NONE, around: None }
+        let motion = MotionBounds::NONE;
+        Self { body, deform: false, skin, vertices, radius, motion, acceleration: 0.0, around: None }
     }
 
     /// Takes in its motion in a step.
     pub fn follow(&mut self, step: &Step<'_>) -> Result<(), StepError> {
         self.around = None;
         self.motion = MotionBounds::of(self.body, self.deform, step)?;
+        let bodies = step.resources.try_get::<RigidBodies>();
+        self.acceleration = bodies
+            .and_then(|bodies| bodies.of(self.body).map(RigidBody::last_acceleration))
+            .unwrap_or_default();
         Ok(())
     }
 
@@ -108,76 +116,122 @@ impl InContact {
 
 /// How far apart the two bodies of a pair are.
 pub(super) struct PairDistance {
-    pub pair: [BodyId; 2],
     /// Their numbers among the bodies in contact.
-    numbers: [usize; 2],
-    /// The larger spacing, m.
+    numbers: [u32; 2],
+    /// The larger and the smaller spacing, m.
     spacing: f64,
+    smaller: f64,
     /// Distance at which particles of both just touch, m; none between rigid bodies.
     reach: Option<f64>,
     is_apart: bool,
     /// How far both may still move until this is looked at again, m.
     left: f64,
+    /// Limit of an impact of two rigid bodies.
+    slow: SlowImpact,
 }
 
 impl PairDistance {
     /// Of a pair of these bodies, ascending; nothing is known yet.
-    pub fn of(pair: &Touching, bodies: &[InContact], spacing: impl Fn(BodyId) -> f64) -> Self {
+    pub fn new(pair: &Touching, bodies: &[InContact], spacing: impl Fn(BodyId) -> f64) -> Self {
         let [first, second] = pair.bodies();
-        let number = |body: BodyId| bodies.partition_point(|known| known.body < body);
+        let number = |body: BodyId| bodies.partition_point(|known| known.body < body) as u32;
         Self {
-            pair: [first, second],
             numbers: [number(first), number(second)],
             spacing: spacing(first).max(spacing(second)),
+            smaller: spacing(first).min(spacing(second)),
             reach: pair.reach(),
             is_apart: false,
             left: 0.0,
+            slow: SlowImpact::default(),
         }
     }
 
-    /// Bounds of the motion of both.
-    pub fn motion(&self, bodies: &[InContact]) -> [MotionBounds; 2] {
-        self.numbers.map(|number| bodies[number].motion)
+    /// The two bodies.
+    #[inline]
+    pub fn of<'b>(&self, bodies: &'b [InContact]) -> [&'b InContact; 2] {
+        // By number: a mapped array would be called.
+        [&bodies[self.numbers[0] as usize], &bodies[self.numbers[1] as usize]]
     }
 
-    /// Takes in a step of the pair, and says whether its bodies are apart. What is near or touches wakes them
-    /// up; they fall asleep only twice as far apart, and when nothing touches any more.
+    /// Bounds of the motion of both.
+    #[inline]
+    pub fn motion(&self, bodies: &[InContact]) -> [MotionBounds; 2] {
+        let [first, second] = self.of(bodies);
+        [first.motion, second.motion]
+    }
+
+    /// Takes in a step of the pair, and says whether its bodies are apart; then it proposes their limits. What
+    /// is near or touches wakes them up; they fall asleep only twice as far apart, and when nothing touches any
+    /// more.
+    #[inline]
     pub fn follow(
         &mut self,
         pair: &mut Touching,
         bodies: &mut [InContact],
         periodic: &Periodic,
-        step: &Step<'_>,
+        step: &mut Step<'_>,
     ) -> Result<bool, StepError> {
         self.left -= speed_of_points(self.motion(bodies)) * step.clock.dt;
         // What is not a number must not keep bodies apart.
         if self.left.is_nan() || self.left <= 0.0 {
-            let [first, second] = self.numbers;
-            let gap = match (bodies[first].around(step)?, bodies[second].around(step)?) {
-                (Some(first), Some(second)) => gap_of(&first, &second, periodic),
-                _ => 0.0,
-            };
-            let (far, was_apart) = (FAR * self.spacing, self.is_apart);
-            self.is_apart = gap > 2.0 * far && pair.is_idle();
-            self.left = if self.is_apart { gap - far } else { far };
-            if was_apart && !self.is_apart {
-                pair.come_near();
-            }
+            self.look(pair, bodies, periodic, step)?;
+        }
+        if self.is_apart {
+            self.limit(pair, bodies, step)?;
         }
         Ok(self.is_apart)
     }
 
-    /// Proposes the limits of a pair whose bodies are apart.
-    pub fn limit(&self, pair: &Touching, bodies: &[InContact], step: &mut Step<'_>) -> Result<(), StepError> {
-        let motion = self.motion(bodies);
-        match (self.reach, pair) {
-            (Some(reach), _) => {
-                let speed = MotionBounds::approach(motion, &Map::IDENTITY);
-                let touches = Touches { squared: 0.0, stored: 0.0, speed, reach };
-                time_step::propose(step, self.pair, &touches)
-            }
-            (None, Touching::Surface(contact)) => contact.limit_apart(step, motion),
-            (None, _) => Ok(()),
+    /// Looks at how far apart they are.
+    fn look(
+        &mut self,
+        pair: &mut Touching,
+        bodies: &mut [InContact],
+        periodic: &Periodic,
+        step: &Step<'_>,
+    ) -> Result<(), StepError> {
+        let [first, second] = self.numbers.map(|number| number as usize);
+        let gap = match (bodies[first].around(step)?, bodies[second].around(step)?) {
+            (Some(first), Some(second)) => gap_of(&first, &second, periodic),
+            _ => 0.0,
+        };
+        let (far, was_apart) = (FAR * self.spacing, self.is_apart);
+        self.is_apart = gap > 2.0 * far && pair.is_idle();
+        self.left = if self.is_apart { gap - far } else { far };
+        if was_apart && !self.is_apart {
+            pair.come_near();
         }
+        Ok(())
+    }
+
+    /// Proposes the limits of a pair whose bodies are apart.
+    #[inline]
+    fn limit(&mut self, pair: &Touching, bodies: &[InContact], step: &mut Step<'_>) -> Result<(), StepError> {
+        let [first, second] = self.of(bodies);
+        let motion = [first.motion, second.motion];
+        let speed = MotionBounds::approach(motion, &Map::IDENTITY);
+        let Some(reach) = self.reach else {
+            if !self.is_slow(speed, [first, second], step)
+                && let Touching::Surface(contact) = pair
+            {
+                self.slow = contact.limit_apart(step, motion)?;
+            }
+            return Ok(());
+        };
+        let touches = Touches { squared: 0.0, stored: 0.0, speed, reach };
+        time_step::propose(step, [first.body, second.body], &touches)
+    }
+
+    /// Whether two rigid bodies are so slow and so far apart that their limits are above those of others: of
+    /// many bodies nearly all are, and what is known here of them tells.
+    #[inline]
+    fn is_slow(&self, speed: f64, [first, second]: [&InContact; 2], step: &Step<'_>) -> bool {
+        let Self { slow, .. } = self;
+        let (gap, velocity) =
+            (self.left + FAR * self.spacing, second.motion.velocity.distance(first.motion.velocity));
+        speed <= slow.speed
+            && first.acceleration.max(second.acceleration) <= slow.gain
+            && step.limits.has_below(slow.limit)
+            && step.limits.has_below(time_step::limit_of_approach(self.smaller, gap, velocity))
     }
 }

@@ -40,7 +40,7 @@ pub(in crate::contact) fn add(sim: &mut SimBuilder<'_>, planned: Planned, bodies
     let heats = sim.scene().contacts.iter().any(|contact| contact.friction_heat.is_some());
     let warm = |body: BodyId| Some((body, sim.body(body).specific_heat().filter(|_| heats)?));
     let in_contact = InContact::of(bodies.iter(), &touching);
-    let distance = |pair: &Touching| PairDistance::of(pair, &in_contact, |body| sim.body(body).spacing);
+    let distance = |pair: &Touching| PairDistance::new(pair, &in_contact, |body| sim.body(body).spacing);
     let contacts = Contacts {
         specific_heats: bodies.iter().filter_map(warm).collect(),
         stored: bodies.iter().map(|body| (body, 0.0)).collect(),
@@ -170,8 +170,9 @@ impl Contacts {
 
     /// Whether a contact acts in this step: not one of a body that has been removed from the run.
     fn acts_now(&self, k: usize) -> bool {
-        let is_there = |body: &BodyId| !self.gone.contains(body);
-        self.acts[k].now(&self.fragile) && self.distances[k].pair.iter().all(is_there)
+        let is_there = |body: &InContact| self.gone.is_empty() || !self.gone.contains(&body.body);
+        let [first, second] = self.distances[k].of(&self.bodies);
+        self.acts[k].now(&self.fragile) && is_there(first) && is_there(second)
     }
 
     /// Chooses the contacts that act in this step, of bodies that are near each other. The others only limit
@@ -184,9 +185,7 @@ impl Contacts {
             }
             let Self { touching, distances, bodies, periodic, acting, .. } = self;
             let (pair, distance) = (&mut touching[k], &mut distances[k]);
-            if distance.follow(pair, bodies, periodic, step)? {
-                distance.limit(pair, bodies, step)?;
-            } else {
+            if !distance.follow(pair, bodies, periodic, step)? {
                 acting.push(k as u32);
             }
         }

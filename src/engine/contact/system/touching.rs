@@ -76,7 +76,11 @@ impl Touching {
 
     /// Response of two rigid bodies to its springs, as the other contact of the pair needs it.
     pub fn beside_the_other(&self) -> Option<CoupledResponse> {
-        if let Self::Surface(contact) = self { Some(contact.together?.turned_around()) } else { None }
+        if let Self::Surface(contact) = self {
+            Some(contact.known()?.together?.turned_around())
+        } else {
+            None
+        }
     }
 
     /// Computes the forces; `beside` are the contacts of the points of the second of two rigid bodies on the
@@ -157,7 +161,7 @@ impl Touching {
             Self::Particles(contact) => {
                 [Some((first, &contact.contact_nodes[0])), Some((second, &contact.contact_nodes[1]))]
             }
-            Self::Surface(contact) => [Some((first, &contact.contact_nodes)), None],
+            Self::Surface(contact) => [contact.known().map(|near| (first, &near.contact_nodes)), None],
             Self::SkinOnTool(_) | Self::Skins(_) => [None, None],
         }
         .into_iter()
@@ -177,7 +181,10 @@ impl Touching {
     pub fn saved(&self) -> Saved {
         let histories: &[&Histories] = match self {
             Self::Particles(contact) => &[&contact.contacts.histories],
-            Self::Surface(contact) => &[&contact.contacts.histories],
+            Self::Surface(contact) => match contact.known() {
+                Some(near) => &[&near.contacts.histories],
+                None => &[],
+            },
             Self::SkinOnTool(contact) => &[&contact.contacts.histories],
             Self::Skins(contact) => match contact.known() {
                 Some(pair) => &pair.passes.each_ref().map(|pass| &pass.histories),
@@ -201,7 +208,7 @@ impl Touching {
         }
         let own: &mut [&mut Histories] = match self {
             Self::Particles(contact) => &mut [&mut contact.contacts.histories],
-            Self::Surface(contact) => &mut [&mut contact.contacts.histories],
+            Self::Surface(contact) => &mut [&mut contact.near().contacts.histories],
             Self::SkinOnTool(contact) => &mut [&mut contact.contacts.histories],
             Self::Skins(contact) => &mut contact.near().passes.each_mut().map(|pass| &mut pass.histories),
         };

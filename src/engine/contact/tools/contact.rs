@@ -23,6 +23,13 @@ pub(in crate::contact) struct SurfaceContact {
     pub sides: ContactSides,
     /// Acceleration of gravity, m/s2.
     gravity: f64,
+    /// What is near the surface; of two rigid bodies once they have come near: of many bodies most pairs never
+    /// do.
+    known: Option<Box<NearSurface>>,
+}
+
+/// The nodes near a surface, and the contacts among them.
+pub(in crate::contact) struct NearSurface {
     nearby: Nearby,
     pub contacts: ActiveContacts<NodeTouch, NodePush, NearNodes>,
     /// The particles that touch.
@@ -33,7 +40,20 @@ pub(in crate::contact) struct SurfaceContact {
     pub together: Option<CoupledResponse>,
 }
 
+/// The limit of an impact of two rigid bodies that are apart, s, as long as they approach no faster than at
+/// `speed`, m/s, and are accelerated by no more than `gain`, m/s2.
+#[derive(Clone, Copy, Default)]
+pub(in crate::contact) struct SlowImpact {
+    pub speed: f64,
+    pub gain: f64,
+    pub limit: f64,
+}
+
+/// Speed and acceleration for which that limit is found, over those of the step.
+const MARGIN: f64 = 1.25;
+
 /// Responses of the nodes in contact in a step.
+#[derive(Default)]
 struct ToolResponses {
     energies: ContactEnergy,
     /// Squared frequency of an impact that may come, 1/s2.
@@ -44,9 +64,8 @@ struct ToolResponses {
     gap: f64,
 }
 
-impl SurfaceContact {
-    /// Contact of the nodes of a body with the surface of another.
-    pub fn new(interaction: Interaction, sides: ContactSides, gravity: f64) -> Self {
+impl NearSurface {
+    fn new(sides: &ContactSides) -> Self {
         let particles = sides.nodes.particles();
         let count = particles.map_or(0, |particles| particles.radius.len());
         let nearby = Nearby::new(count, particles.map_or(0.0, MemberParticles::max_radius));
@@ -54,27 +73,50 @@ impl SurfaceContact {
         let (mut contacts, mut contact_nodes) = (ActiveContacts::default(), ContactNodes::new(count));
         contacts.reserve(capacity);
         contact_nodes.reserve(capacity);
-        let near = NearNodes::default();
-        Self { interaction, gravity, nearby, sides, contacts, contact_nodes, near, together: None }
+        Self { nearby, contacts, contact_nodes, near: NearNodes::default(), together: None }
+    }
+
+    fn is_idle(&self) -> bool {
+        self.nearby.candidates().is_empty() && self.contacts.histories.is_empty() && self.together.is_none()
+    }
+}
+
+impl SurfaceContact {
+    /// Contact of the nodes of a body with the surface of another.
+    pub fn new(interaction: Interaction, sides: ContactSides, gravity: f64) -> Self {
+        let known = sides.nodes.particles().map(|_| Box::new(NearSurface::new(&sides)));
+        Self { interaction, sides, gravity, known }
+    }
+
+    /// What is near the surface, once something has been.
+    pub fn known(&self) -> Option<&NearSurface> {
+        self.known.as_deref()
+    }
+
+    /// The same, to be changed.
+    pub fn near(&mut self) -> &mut NearSurface {
+        self.known.get_or_insert_with(|| Box::new(NearSurface::new(&self.sides)))
     }
 
     /// Whether nothing touches and no nodes are near the surface.
     pub fn is_idle(&self) -> bool {
-        self.nearby.candidates().is_empty() && self.contacts.histories.is_empty() && self.together.is_none()
+        self.known().is_none_or(NearSurface::is_idle)
     }
 
     /// Has all nodes searched again.
     pub fn forget(&mut self) {
-        self.nearby.forget();
+        self.near().nearby.forget();
     }
 
     /// Finds the nodes in contact, and adds the forces of their springs to the rigid bodies.
     pub fn find(&mut self, step: &Step<'_>, motion: [MotionBounds; 2]) -> Result<(), StepError> {
         let mut bodies = step.resources.get_mut::<RigidBodies>();
         let (speed, dt) = (MotionBounds::approach(motion, &Map::IDENTITY), step.clock.dt);
-        let Self { interaction, sides, nearby, contacts, contact_nodes, .. } = self;
+        self.near();
+        let Self { interaction, sides, known: Some(known), .. } = self else { return Ok(()) };
+        let NearSurface { nearby, contacts, contact_nodes, near, together } = &mut **known;
         let of_particles = sides.nodes.particles().is_some();
-        (self.near, self.together) = sides.with(step.world, step.resources, &bodies, |nodes, tool| {
+        (*near, *together) = sides.with(step.world, step.resources, &bodies, |nodes, tool| {
             let is_new = nearby.update(sides, nodes, tool, speed * dt, motion[0].stretch);
             if is_new && of_particles {
                 contact_nodes.renew(nearby.candidates(), &[ContactEnd::First]);
@@ -89,8 +131,8 @@ impl SurfaceContact {
                 });
             (near, on.act_together(contacts.met()))
         })?;
-        if let Some(CoupledResponse { on_node, on_tool }) = &self.together {
-            let both = [(self.sides.first, on_node), (self.sides.second, on_tool)];
+        if let Some(CoupledResponse { on_node, on_tool }) = together {
+            let both = [(sides.first, &*on_node), (sides.second, &*on_tool)];
             for (id, springs) in both {
                 let body = bodies.of_mut(id);
                 body.into_iter().for_each(|body| body.contact_stiffness.add(springs));
@@ -106,7 +148,7 @@ impl SurfaceContact {
 
     /// Has the nodes that touch begin with that part of their overlaps.
     pub fn begin(&mut self, part: f64) {
-        self.contacts.begin(|_, touch| touch.begun(part));
+        self.near().contacts.begin(|_, touch| touch.begun(part));
     }
 
     /// Computes the forces of all nodes that touch, where the bodies approach at `speed`, m/s.
@@ -117,7 +159,10 @@ impl SurfaceContact {
         beside: Option<CoupledResponse>,
     ) -> Result<ToolResponses, StepError> {
         let (bodies, dt) = (step.resources.get::<RigidBodies>(), step.clock.dt);
-        let Self { interaction, sides, contacts, gravity, near, together, .. } = self;
+        let Self { interaction, sides, known: Some(known), gravity } = self else {
+            return Ok(ToolResponses::default());
+        };
+        let NearSurface { contacts, near, together, .. } = &mut **known;
         sides.with(step.world, step.resources, &bodies, |nodes, tool| {
             let together = together.map(|own| own.with_others(beside, nodes, tool));
             let together = together.as_ref().map_or(&[][..], |both| &both[..]);
@@ -132,19 +177,28 @@ impl SurfaceContact {
         })
     }
 
-    /// Proposes the limits of two rigid bodies none of whose nodes is near the other one.
-    pub fn limit_apart(&self, step: &mut Step<'_>, motion: [MotionBounds; 2]) -> Result<(), StepError> {
+    /// Proposes the limits of two rigid bodies none of whose nodes is near the other one; gives the limit that
+    /// an impact will not fall below while they are no faster than now by much.
+    pub fn limit_apart(
+        &self,
+        step: &mut Step<'_>,
+        motion: [MotionBounds; 2],
+    ) -> Result<SlowImpact, StepError> {
         let speed = MotionBounds::approach(motion, &Map::IDENTITY);
         let Self { interaction, sides, gravity, .. } = self;
         let (bodies, dt) = (step.resources.get::<RigidBodies>(), step.clock.dt);
-        let (expected, gap) = sides.with(step.world, step.resources, &bodies, |nodes, tool| {
+        let (expected, gap, slow) = sides.with(step.world, step.resources, &bodies, |nodes, tool| {
             let on = OnSurface { interaction, sides, nodes, tool, dt, together: &[] };
-            (on.expected(&NearNodes::default(), speed, *gravity), sides.gap(nodes, tool))
+            let near = NearNodes::default();
+            let (speed_then, gain) = (MARGIN * speed, MARGIN * on.gain(*gravity));
+            let limit = time_step::limit_of_impact(on.impact(&near, speed_then, gain), dt);
+            let slow = SlowImpact { speed: speed_then, gain, limit };
+            (on.expected(&near, speed, *gravity), sides.gap(nodes, tool), slow)
         })?;
         let pair = [sides.first, sides.second];
         time_step::propose_rigid(step, pair, expected, NormalMotion::default());
         time_step::propose_approach(step, pair, motion[1].velocity - motion[0].velocity, gap);
-        Ok(())
+        Ok(slow)
     }
 
     /// Computes the forces of all nodes that touch, and pushes the rigid bodies; `beside` are the contacts of
@@ -159,7 +213,8 @@ impl SurfaceContact {
         let ToolResponses { energies, expected, nodes, gap } = self.respond(step, speed, beside)?;
         let resources = step.resources;
         let mut bodies = resources.get_mut::<RigidBodies>();
-        let Self { interaction, sides, contacts, contact_nodes, near, .. } = self;
+        let Self { interaction, sides, known: Some(known), .. } = self else { return Ok(energies) };
+        let NearSurface { contacts, contact_nodes, near, .. } = &mut **known;
         let of_particles = sides.nodes.particles();
         let pushes = contacts.pushes();
         contact_nodes.add_up(contacts.numbers(), &|number, _| {

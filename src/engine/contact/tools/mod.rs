@@ -12,5 +12,5 @@ mod on_surface;
 
 mod contact;
 
-pub(super) use contact::SurfaceContact;
+pub(super) use contact::{SlowImpact, SurfaceContact};
 pub(super) use together::CoupledResponse;

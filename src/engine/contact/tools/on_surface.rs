@@ -257,13 +257,23 @@ impl OnSurface<'_> {
     /// has no mass that would limit the step by itself, must not come as a surprise. All nodes that are near
     /// may touch at once.
     pub fn expected(&self, near: &NearNodes, speed: f64, gravity: f64) -> f64 {
+        self.impact(near, speed, self.gain(gravity))
+    }
+
+    /// Acceleration with which both may fall towards each other, m/s2.
+    pub fn gain(&self, gravity: f64) -> f64 {
+        let own = if let NodeView::Rigid(body) = self.nodes { body.last_acceleration() } else { 0.0 };
+        gravity.max(own).max(self.tool.last_acceleration())
+    }
+
+    /// The same for an acceleration `gain`, m/s2; it grows with speed and acceleration.
+    pub fn impact(&self, near: &NearNodes, speed: f64, gain: f64) -> f64 {
         let Self { interaction, nodes, tool, .. } = self;
         let count = near.massless.max(1) as f64;
         let inverse = |body: &RigidBody| if body.is_driven() { 0.0 } else { 1.0 / body.mass };
-        let acceleration = |body: &RigidBody| (body.state.force / body.mass).length();
-        let (node, inverse_mass, own_acceleration) = match (nodes, near.held) {
-            (NodeView::Rigid(body), _) => (0, inverse(body) + inverse(tool), acceleration(body)),
-            (NodeView::Particles(_), Some(node)) => (node, inverse(tool), 0.0),
+        let (node, inverse_mass) = match (nodes, near.held) {
+            (NodeView::Rigid(body), _) => (0, inverse(body) + inverse(tool)),
+            (NodeView::Particles(_), Some(node)) => (node, inverse(tool)),
             (NodeView::Particles(_), None) => return 0.0,
         };
         if inverse_mass == 0.0 {
@@ -271,7 +281,6 @@ impl OnSurface<'_> {
         }
         let touch = self.touch(node, 0.0);
         // A body at rest may fall: what it gains over the length of a node counts as its speed.
-        let gain = gravity.max(own_acceleration).max(acceleration(tool));
         let speed = speed + (2.0 * gain * touch.length).sqrt();
         let inverse_mass = count * inverse_mass;
         interaction.law.stiffness_of_impact(&touch, 1.0 / inverse_mass, speed) * inverse_mass

@@ -127,8 +127,7 @@ impl Formulation for Eulerian {
                 artificial_stress.add(*id, &kernel, support, sim);
             }
             kernels.push(EulerianKernel { kernel, divergence: parameters.divergence, control: None });
-            let name = &sim.body(*id).name;
-            let touches_itself = touching.has(name, name);
+            let touches_itself = touching.has(*id, *id);
             let rows = sim.body(*id).rows.clone();
             let follows = parameters.follows(sim.body(*id));
             listed.push(EulerianBody {

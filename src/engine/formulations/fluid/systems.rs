@@ -52,7 +52,7 @@ fn boundaries(groups: &[Group]) -> Vec<PhaseId> {
 /// may touch one.
 pub fn short_phases(groups: &[Group], sim: &SimBuilder<'_>) -> Vec<PhaseId> {
     let touching = sim.touching_pairs();
-    let touched = |group: &Group| touching.names(&sim.body(group.body).name);
+    let touched = |group: &Group| touching.names(group.body);
     let moved = |group: &Group| matches!(&group.role, Role::Boundary(surface) if surface.moved);
     if !groups.iter().any(moved) {
         return Vec::new();

@@ -8,15 +8,12 @@
 //! to the reference configuration by the deformation gradient of the nearest particle, and compared with the
 //! shape there. As bodies may have been cut or torn, particles of the body also have to surround the place.
 
-use std::collections::BTreeMap;
-
 use glam::DVec3;
 
 use super::particles_in::{ParticlesIn, bounds, holds};
 use crate::neighbors::{Cloud, NeighborList, NeighborSearch, Periodic};
 use crate::plugin::{BodyKind, BodyPlan, SimBuilder};
 use crate::rigid::{RigidBodies, RigidBody};
-use crate::scene::Contact;
 use crate::schedule::{Intruders, Step, StepError};
 use crate::shapes::{Aabb, Region};
 use crate::world::{BodyId, DeformationGradient, ParticleId, Position, ReferencePosition, Removed};
@@ -60,8 +57,6 @@ struct NearParticles {
 impl BodiesInside {
     /// All pairs of solids, rigid bodies and walls that have a contact.
     pub fn new(sim: &SimBuilder<'_>) -> Self {
-        let named: BTreeMap<&str, &BodyPlan> =
-            sim.bodies().iter().map(|body| (&body.name[..], body)).collect();
         let is_solid = |body: &BodyPlan| body.kind == BodyKind::Solid;
         // The distance from a rigid body is the exact one.
         let solid_first = |a: &BodyPlan, b: &BodyPlan| {
@@ -69,10 +64,10 @@ impl BodiesInside {
             let [a, b] = if is_solid(a) || !is_solid(b) { [a, b] } else { [b, a] };
             [a.id, b.id]
         };
-        let of = |(_, contact): (usize, Contact)| {
-            let body = |name: &str| named.get(name).filter(|body| body.kind != BodyKind::Fluid).copied();
-            let (a, b) = (body(&contact.between.0)?, body(&contact.between.1)?);
-            (a.id != b.id).then(|| solid_first(a, b))
+        let of = |(_, pair): (usize, [BodyId; 2])| {
+            let [a, b] = pair.map(|body| sim.body(body));
+            let are_two = a.id != b.id && [a, b].iter().all(|body| body.kind != BodyKind::Fluid);
+            are_two.then(|| solid_first(a, b))
         };
         let mut pairs: Vec<[BodyId; 2]> = sim.contact_pairs().filter_map(of).collect();
         pairs.sort_unstable();

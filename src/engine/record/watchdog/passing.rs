@@ -31,7 +31,7 @@ impl PassingBodies {
         let all = bodies().flat_map(|a| bodies().filter(|b| a.id.0 < b.id.0).map(move |b| (a, b)));
         let all = all.filter(|(a, b)| a.bounds.is_bounded() || b.bounds.is_bounded());
         let pairs: Vec<[BodyId; 2]> =
-            all.filter(|(a, b)| !touching.has(&a.name, &b.name)).map(|(a, b)| [a.id, b.id]).collect();
+            all.filter(|(a, b)| !touching.has(a.id, b.id)).map(|(a, b)| [a.id, b.id]).collect();
         let spacings = sim.bodies().iter().map(|body| body.spacing).collect();
         Self { told: vec![false; pairs.len()], pairs, spacings }
     }

@@ -132,7 +132,7 @@ fn share_of(id: BodyId, sim: &SimBuilder<'_>) -> Option<(f64, f64)> {
     let (flow, body) = (flow(sim)?, sim.body(id));
     let share = if has_suction(sim) { SHARE_WITH_SUCTION } else { SHARE };
     let is_long = time.step.factor() > 1.0;
-    let has_room = !is_long && !sim.touching_pairs().names(&body.name);
+    let has_room = !is_long && !sim.touching_pairs().names(id);
     let most = if has_room { MOST } else { MOST_IN_CONTACT };
     Some((share * (flow.spacing / body.spacing).max(1.0), most))
 }

@@ -6,9 +6,8 @@ use crate::formulations::fluid::cloud::{FlowCloud, Group};
 use crate::formulations::fluid::walls::{Slip, WallBody};
 use crate::notation::quantity;
 use crate::pair::PhaseTerms;
-use crate::plugin::{BodyKind, Setup, SimBuilder};
-use crate::rigid::{RigidBodies, RigidBody};
-use crate::scene::TouchingPairs;
+use crate::plugin::{BodyKind, Setup, SimBuilder, TouchingPairs};
+use crate::rigid::RigidBodies;
 use crate::world::{BodyId, ReferenceVolume};
 
 /// Warns of fluids whose density nothing diffuses.
@@ -110,12 +109,9 @@ pub fn sinking(
         let density = body.mass / volume[rows].iter().map(|volume| volume.0).sum::<f64>();
         let name = &setup.world.body(body.id).name;
         let name_of = |wall: &BodyId| &setup.world.body(*wall).name;
-        let is_free = |other: &str| {
-            let is_it = |body: &&RigidBody| setup.world.body(body.id).name == other;
-            bodies.iter().find(is_it).is_some_and(|body| !body.is_driven())
-        };
+        let is_free = |other: BodyId| bodies.of(other).is_some_and(|body| !body.is_driven());
         // A solid, a tool or a wall may hold it; another loose body does not.
-        let rests = touching.partners(name).any(|other| other != name && !is_free(other));
+        let rests = touching.partners(body.id).iter().any(|&other| other != body.id && !is_free(other));
         let held = walls.is_empty() || rests;
         if falls && density > densest && !held {
             let wall = name_of(&walls[0]);

@@ -27,7 +27,7 @@ fn fault(body: &BodyPlan, field: &str, message: String, help: &str) -> SetupErro
 pub fn walls_have_fluid(walls: &[WallBody], sim: &SimBuilder<'_>) -> Result<(), SetupError> {
     for wall in walls {
         let body = sim.body(wall.id);
-        if !sim.touching_pairs().names(&body.name) {
+        if !sim.touching_pairs().names(wall.id) {
             let message =
                 format!("body `{}` is a wall, and there is no fluid that it could bound", body.name);
             let help = "add a body with `formulation: Fluid`, or a contact of the wall with another body";

@@ -91,7 +91,7 @@ impl PassingWalls {
             for body in of(BodyKind::Rigid).chain(of(BodyKind::Solid)) {
                 let shape = &sim.scene().bodies[wall.id.0].shape;
                 let Ok(region) = shape.region(sim.dimension(), sim.folder(), "shape") else { continue };
-                if !touching.has(&body.name, &wall.name) {
+                if !touching.has(body.id, wall.id) {
                     let spacings = [body.spacing, wall.spacing];
                     let is_plane = sim.dimension() == Dimension::Two;
                     pairs.push(BodyAndWall { body: body.id, wall: wall.id, region, spacings, is_plane });
