@@ -160,9 +160,9 @@ impl PairDistance {
         [first.motion, second.motion]
     }
 
-    /// Takes in a step of the pair, and says whether its bodies are apart; then it proposes their limits. What
-    /// is near or touches wakes them up; they fall asleep only twice as far apart, and when nothing touches any
-    /// more.
+    /// Takes in a step of the pair, and says whether its bodies are apart; then it proposes their limits.
+    /// What is near or touches wakes them up; they fall asleep only twice as far apart, and when nothing
+    /// touches any more.
     #[inline]
     pub fn follow(
         &mut self,

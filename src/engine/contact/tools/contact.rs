@@ -23,8 +23,8 @@ pub(in crate::contact) struct SurfaceContact {
     pub sides: ContactSides,
     /// Acceleration of gravity, m/s2.
     gravity: f64,
-    /// What is near the surface; of two rigid bodies once they have come near: of many bodies most pairs never
-    /// do.
+    /// What is near the surface; of two rigid bodies once they have come near, which of many bodies most
+    /// pairs never do.
     known: Option<Box<NearSurface>>,
 }
 
@@ -177,8 +177,8 @@ impl SurfaceContact {
         })
     }
 
-    /// Proposes the limits of two rigid bodies none of whose nodes is near the other one; gives the limit that
-    /// an impact will not fall below while they are no faster than now by much.
+    /// Proposes the limits of two rigid bodies none of whose nodes is near the other one; gives the limit
+    /// that an impact does not fall below for as long as they are little faster than now.
     pub fn limit_apart(
         &self,
         step: &mut Step<'_>,
