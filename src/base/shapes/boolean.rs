@@ -5,14 +5,16 @@ use glam::DVec3;
 use super::moments::Moments;
 use super::region::{Aabb, Region};
 use super::surface::{Surface, SurfacePoint};
+use super::union_tree::UnionTree;
 
 /// Maximum number of cells between the faces of boxes; beyond it the volume is integrated numerically.
 const MAX_BOX_CELLS: usize = 200_000;
 
 /// Union of the parts.
 pub(super) struct Union<R: ?Sized> {
-    pub parts: Vec<Box<R>>,
-    pub axes: usize,
+    parts: Vec<Box<R>>,
+    axes: usize,
+    tree: UnionTree,
 }
 
 /// Intersection of the parts.
@@ -22,6 +24,12 @@ pub(super) struct Intersection {
 }
 
 impl<R: Region + ?Sized> Union<R> {
+    /// The union of these parts, of which there is one at least.
+    pub fn new(parts: Vec<Box<R>>, axes: usize) -> Self {
+        let bounds: Vec<Aabb> = parts.iter().map(|part| part.bounds()).collect();
+        Self { parts, axes, tree: UnionTree::new(&bounds) }
+    }
+
     /// Whether the bounding boxes of the parts, each extended by `margin` \[m\], are disjoint.
     pub fn is_apart(&self, margin: f64) -> bool {
         let bounds: Vec<Aabb> = self.parts.iter().map(|part| part.bounds().grown(margin)).collect();
@@ -31,16 +39,15 @@ impl<R: Region + ?Sized> Union<R> {
 
 impl<R: Region + ?Sized> Region for Union<R> {
     fn distance(&self, point: DVec3) -> f64 {
-        self.parts.iter().map(|part| part.distance(point)).fold(f64::INFINITY, f64::min)
+        self.tree.smallest(point, |part| self.parts[part].distance(point))
     }
 
     fn clearance(&self, point: DVec3) -> f64 {
-        self.parts.iter().map(|part| part.clearance(point)).fold(f64::INFINITY, f64::min)
+        self.tree.smallest(point, |part| self.parts[part].clearance(point))
     }
 
     fn bounds(&self) -> Aabb {
-        let first = self.parts[0].bounds();
-        self.parts.iter().fold(first, |bounds, part| bounds.union(&part.bounds()))
+        self.tree.bounds()
     }
 
     fn volume(&self) -> Option<f64> {

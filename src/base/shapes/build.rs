@@ -26,7 +26,7 @@ impl Shape {
         let check = ShapeCheck { dimension, folder, path };
         let axes = dimension.count();
         Ok(match self {
-            Self::Union(shapes) => Box::new(Union { parts: check.parts(shapes, Self::region)?, axes }),
+            Self::Union(shapes) => Box::new(Union::new(check.parts(shapes, Self::region)?, axes)),
             Self::Intersection(shapes) => {
                 Box::new(Intersection { parts: check.parts(shapes, Self::region)?, axes })
             }
@@ -71,7 +71,7 @@ impl Shape {
         let none = |why| Err(FillError::new(path, FillErrorKind::NoSurface(why)));
         Ok(match self {
             Self::Union(shapes) => {
-                let union = Union { parts: check.parts(shapes, Self::surface)?, axes };
+                let union = Union::new(check.parts(shapes, Self::surface)?, axes);
                 if !union.is_apart(union.tolerance()) {
                     return none("the parts of the union touch each other");
                 }

@@ -39,6 +39,7 @@ mod surface;
 mod tiling;
 mod transform;
 mod two_nearest;
+mod union_tree;
 mod voronoi;
 
 pub use by_distance::ByDistance;
