@@ -12,10 +12,10 @@ pub(super) struct UnionTree {
     /// Numbers of the parts, in the order of the leaves.
     parts: Vec<u32>,
     /// The first one is the root.
-    nodes: Vec<Node>,
+    nodes: Vec<PartsNode>,
 }
 
-struct Node {
+struct PartsNode {
     bounds: Aabb,
     /// Where its parts are in the order of the leaves.
     first: u32,
@@ -43,7 +43,7 @@ impl UnionTree {
         let around = own.iter().map(|&part| bounds[part as usize]);
         let around = around.reduce(|all, bounds| all.union(&bounds)).unwrap_or(Aabb::around([]));
         let number = self.nodes.len();
-        self.nodes.push(Node { bounds: around, first: first as u32, end: end as u32, second: 0 });
+        self.nodes.push(PartsNode { bounds: around, first: first as u32, end: end as u32, second: 0 });
         if end - first <= LEAF {
             return;
         }
