@@ -120,6 +120,17 @@ fn a_motion_that_differs_within_a_rigid_body_is_an_error() {
 }
 
 #[test]
+fn an_initial_displacement_of_a_rigid_body_is_an_error() {
+    // The first step took its particles back to where its shape is.
+    for moves in [r#"("0.1*step(-x)", 0)"#, r#"("-y*step(-x)", "x*step(-x)")"#] {
+        let condition = format!("InitialDisplacement(on: Select(), value: {moves})");
+        let error = plates(&condition).err().expect("an error").to_string();
+        assert!(error.contains("move `left`") && error.contains("`Translate`"), "{error}");
+    }
+    assert!(plates(r#"InitialDisplacement(on: Select(body: "left"), value: ("1e-15*x", 0))"#).is_ok());
+}
+
+#[test]
 fn a_motion_may_differ_from_rigid_body_to_rigid_body() {
     let mut sim = plates(r#"Velocity(on: Select(), value: ("-2*sign(x)", 0.0))"#)
         .unwrap_or_else(|error| panic!("{error}"));
