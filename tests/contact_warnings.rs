@@ -122,3 +122,23 @@ fn a_rigid_disc_that_bounces_as_it_rolls_does_not_chatter() {
     sim.run(|_| true).expect("a run");
     assert!(!says(&sim, "chatter"), "{:?}", sim.warnings());
 }
+
+/// A rigid disc between the particles of a block that has been drawn to twice its size.
+#[test]
+fn a_body_among_debris_is_not_inside_of_what_has_failed() {
+    let warned = |failure: &str| {
+        let mut sim = built(format!(
+            r#"(dimension: Two, materials: {{"m": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)}},
+            bodies: [
+                (name: "block", material: "m", shape: Box(min: (0, 0), max: (0.6, 0.6)), spacing: 0.1, formulation: TotalLagrangian, plugins: [{failure}]),
+                (name: "disc", material: "m", shape: Sphere(center: (0.8, 0.8), radius: 0.05), spacing: 0.02, formulation: Rigid()),
+            ],
+            conditions: [InitialDisplacement(on: Select(body: "block"), value: ("x", "y"))],
+            contacts: [Contact(between: ("block", "disc"))], time: (end: 2e-6), record: (every: 1e-6))"#
+        ));
+        sim.run(|_| true).expect("a run");
+        says(&sim, "of `disc` is inside of `block`")
+    };
+    assert!(warned(""));
+    assert!(!warned("failure(criterion: MaximumPrincipalStrain(limit: 0.5), then: NoTension)"));
+}

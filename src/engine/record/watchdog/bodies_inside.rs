@@ -7,6 +7,8 @@
 //! The distance from a rigid body is that from its exact surface. A place in a deformable body is mapped back
 //! to the reference configuration by the deformation gradient of the nearest particle, and compared with the
 //! shape there. As bodies may have been cut or torn, particles of the body also have to surround the place.
+//! Failed particles do not count: debris flies anywhere, and its deformation gradients say nothing of where
+//! the body is.
 
 use glam::DVec3;
 
@@ -16,7 +18,7 @@ use crate::plugin::{BodyKind, BodyPlan, SimBuilder};
 use crate::rigid::{RigidBodies, RigidBody};
 use crate::schedule::{Intruders, Step, StepError};
 use crate::shapes::{Aabb, Region};
-use crate::world::{BodyId, DeformationGradient, ParticleId, Position, ReferencePosition, Removed};
+use crate::world::{BodyId, Damage, DeformationGradient, ParticleId, Position, ReferencePosition, Removed};
 
 /// Depth below a surface at which a particle is inside, over the spacing of the deformable body. Particles
 /// begin as deep behind their own surface, so that surfaces then overlap by a whole spacing.
@@ -229,11 +231,14 @@ impl InSolid<'_> {
         let range = periods.fold(RANGE * spacing, |range, length| range.min(0.49 * length));
         let reach = Aabb::around(particles.places.iter().copied()).grown(range);
         others.find(step, solid, open(reach).as_ref())?;
+        let view = step.world.body_view(solid).0;
+        if let Ok(damage) = view.read::<Damage>() {
+            others.keep(|row| damage[row].0 < 1.0);
+        }
         let [targets, sources] = [&*particles, &*others].map(|of| Cloud::uniform(&of.places, range));
         if search.between(targets, sources, 0.0, periodic, around).is_err() {
             return Ok(None);
         }
-        let view = step.world.body_view(solid).0;
         let (reference, gradient) = (view.read::<ReferencePosition>()?, view.read::<DeformationGradient>()?);
         let mut found = None;
         let first = step.world.body_view(body).1.start;

@@ -28,6 +28,13 @@ impl ParticlesIn {
         self.places.extend(self.rows.iter().map(|row| position[*row].0));
         Ok(())
     }
+
+    /// Leaves those in rows that are wanted.
+    pub fn keep(&mut self, is_wanted: impl Fn(usize) -> bool) {
+        let mut rows = self.rows.iter();
+        self.places.retain(|_| rows.next().is_some_and(|&row| is_wanted(row)));
+        self.rows.retain(|&row| is_wanted(row));
+    }
 }
 
 /// Whether a point is in a box.
