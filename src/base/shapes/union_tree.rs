@@ -84,8 +84,9 @@ impl UnionTree {
             }
             return;
         }
-        let halves =
-            [number + 1, node.second as usize].map(|half| (self.nodes[half].bounds.gap(point), half));
+        let half = |number: usize| (self.nodes[number].bounds.gap(point), number);
+        // By number: a mapped array would be called.
+        let halves = [half(number + 1), half(node.second as usize)];
         let nearer = usize::from(halves[1].0 < halves[0].0);
         for (gap, half) in [halves[nearer], halves[1 - nearer]] {
             // Beyond a face of the box, a part is at least as far as that; inside all may be nearest.
