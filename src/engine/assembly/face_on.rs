@@ -8,11 +8,13 @@
 use glam::DVec3;
 
 use super::approach::{Motions, is_known};
+use crate::boundaries::DisplacedBodies;
 use crate::materials::Law;
 use crate::notation::quantity;
 use crate::plugin::{BodyKind, BodyPlan, SimBuilder};
 use crate::scene::Scene;
 use crate::shapes::Aabb;
+use crate::world::{BodyId, BodySet};
 
 /// The plugin that takes the oscillations.
 const REMEDY: &str = "artificial_viscosity";
@@ -27,11 +29,13 @@ const MIN_COMMON: f64 = 4.0;
 /// Warns of every pair of bodies that have a contact and will meet face to face. Of bodies that start away
 /// from the places of their shapes it is not known.
 pub(super) fn warn(sim: &mut SimBuilder<'_>) {
-    if sim.scene().conditions.iter().any(|item| item.name() == "InitialDisplacement") {
-        return;
-    }
     let motions = Motions::of(sim);
-    let pairs = sim.contact_pairs().map(|(_, pair)| pair.map(|body| sim.body(body)));
+    let displaced =
+        BodySet::new(sim.extensions::<DisplacedBodies>().flat_map(|bodies| bodies.0.iter().copied()));
+    let at_their_shapes =
+        |(_, pair): &(usize, [BodyId; 2])| !pair.iter().any(|&body| displaced.contains(body));
+    let pairs = sim.contact_pairs().filter(at_their_shapes);
+    let pairs = pairs.map(|(_, pair)| pair.map(|body| sim.body(body)));
     let texts: Vec<String> = pairs.filter_map(|pair| text(pair, &motions, sim)).collect();
     texts.into_iter().for_each(|text| sim.warn(text));
 }
@@ -184,7 +188,8 @@ mod tests {
         let text = format!(
             r#"(dimension: Two, materials: {{"m": {material}}},
                 bodies: [(name: "flyer", material: "m", shape: {flyer}, spacing: 5e-4, formulation: TotalLagrangian, velocity: {velocity}),
-                         (name: "target", material: "m", shape: Box(min: (0.0052, 0), max: (0.015, 0.01)), spacing: 5e-4, formulation: TotalLagrangian)],
+                         (name: "target", material: "m", shape: Box(min: (0.0052, 0), max: (0.015, 0.01)), spacing: 5e-4, formulation: TotalLagrangian),
+                         (name: "bystander", material: "m", shape: Box(min: (0, 0.1), max: (0.01, 0.11)), spacing: 1e-3, formulation: TotalLagrangian)],
                 contacts: [Contact(between: ("flyer", "target"), law: Penalty())],
                 conditions: [{condition}],
                 time: (end: 1e-3))"#
@@ -217,5 +222,6 @@ mod tests {
         // It starts a metre above the plate.
         let lifted = r#"InitialDisplacement(on: Select(body: "flyer"), value: (0, 1))"#;
         assert!(!warned_under(lifted, BOX, ELASTIC, "(4, 0)"));
+        assert!(warned_under(&lifted.replace("flyer", "bystander"), BOX, ELASTIC, "(4, 0)"));
     }
 }

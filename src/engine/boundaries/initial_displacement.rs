@@ -8,7 +8,7 @@ use super::part::{Part, parts_of};
 use crate::notation::place;
 use crate::plugin::{BodyKind, Plugin, SetupError, SimBuilder};
 use crate::scene::{Expression, PerAxis, Select};
-use crate::world::Position;
+use crate::world::{BodyId, Position};
 
 /// Starts particles away from their reference positions, which carry no stress, such as for a body that is
 /// released from a stretched state. It acts once, on fixed particles too; a `Displacement` moves its
@@ -32,6 +32,7 @@ impl Plugin for InitialDisplacement {
         let parts = parts_of(&selection, sim);
         field.require_finite(&parts, "displacement")?;
         parts.iter().try_for_each(|part| leave_rigid(part, &field, sim))?;
+        sim.leave_note(DisplacedBodies(parts.iter().map(|part| part.body).collect()));
         sim.add_setup(move |setup| {
             for part in &parts {
                 let (view, _) = setup.world.body_view(part.body);
@@ -45,6 +46,9 @@ impl Plugin for InitialDisplacement {
         Ok(())
     }
 }
+
+/// Bodies that do not start where their shapes are.
+pub struct DisplacedBodies(pub Vec<BodyId>);
 
 /// Largest displacement of a particle of a rigid body, over the spacing, that is none.
 const ROUNDING: f64 = 1e-9;

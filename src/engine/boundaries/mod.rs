@@ -56,7 +56,7 @@ pub use body_force::BodyForce;
 pub use displacement::Displacement;
 pub use fix::Fix;
 pub use force::TotalForce;
-pub use initial_displacement::InitialDisplacement;
+pub use initial_displacement::{DisplacedBodies, InitialDisplacement};
 pub use initial_velocity::{GivenVelocities, InitialVelocity};
 pub use mean_velocity::MeanVelocity;
 pub use pressure::PressureLoad;
