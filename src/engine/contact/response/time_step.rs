@@ -218,22 +218,18 @@ pub(in crate::contact) fn propose_rigid(
     squared: f64,
     landing: NormalMotion,
 ) {
-    if squared > 0.0 {
+    let limit = limit_of_rigid(squared, &landing, step.clock.dt);
+    if limit.is_finite() {
         let world = step.world;
         let (one, other) = (&world.body(pair[0]).name, &world.body(pair[1]).name);
-        let (frequency, dt) = (squared.sqrt(), step.clock.dt);
-        let limit = landing.factor(frequency, dt) / frequency;
         step.limits.propose(limit, format_args!("contact of rigid `{one}` and `{other}`"));
     }
 }
 
-/// The limit of two rigid bodies that are apart, for an impact of that squared frequency, 1/s2; s.
-pub(in crate::contact) fn limit_of_impact(squared: f64, dt: f64) -> f64 {
-    if squared > 0.0 {
-        NormalMotion::default().factor(squared.sqrt(), dt) / squared.sqrt()
-    } else {
-        f64::INFINITY
-    }
+/// That limit after a step of length `dt`, s; infinite without a contact.
+pub(in crate::contact) fn limit_of_rigid(squared: f64, landing: &NormalMotion, dt: f64) -> f64 {
+    let frequency = squared.sqrt();
+    if squared > 0.0 { landing.factor(frequency, dt) / frequency } else { f64::INFINITY }
 }
 
 /// Share of the spacing by which two rigid bodies that may touch may approach in a step, and of the gap

@@ -191,7 +191,8 @@ impl SurfaceContact {
             let on = OnSurface { interaction, sides, nodes, tool, dt, together: &[] };
             let near = NearNodes::default();
             let (speed_then, gain) = (MARGIN * speed, MARGIN * on.gain(*gravity));
-            let limit = time_step::limit_of_impact(on.impact(&near, speed_then, gain), dt);
+            let impact = on.impact(&near, speed_then, gain);
+            let limit = time_step::limit_of_rigid(impact, &NormalMotion::default(), dt);
             let slow = SlowImpact { speed: speed_then, gain, limit };
             (on.expected(&near, speed, *gravity), sides.gap(nodes, tool), slow)
         })?;
