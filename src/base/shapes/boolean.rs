@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::apart::TwoSets;
 use super::moments::Moments;
 use super::region::{Aabb, Region};
 use super::surface::{Surface, SurfacePoint};
@@ -30,10 +31,20 @@ impl<R: Region + ?Sized> Union<R> {
         Self { parts, axes, tree: UnionTree::new(&bounds) }
     }
 
-    /// Whether the bounding boxes of the parts, each extended by `margin` \[m\], are disjoint.
+    /// Whether the parts, each extended by `margin` \[m\], are certainly disjoint.
     pub fn is_apart(&self, margin: f64) -> bool {
-        let bounds: Vec<Aabb> = self.parts.iter().map(|part| part.bounds().grown(margin)).collect();
-        (0..bounds.len()).all(|i| bounds[..i].iter().all(|other| other.is_apart(&bounds[i], self.axes)))
+        (0..self.parts.len()).all(|i| (0..i).all(|j| self.are_apart(i, j, margin)))
+    }
+
+    /// Whether two parts are: the boxes around them, or what is in both of these.
+    fn are_apart(&self, i: usize, j: usize, margin: f64) -> bool {
+        let [a, b] = [i, j].map(|part| self.parts[part].as_ref());
+        let [around_a, around_b] = [a, b].map(|part| part.bounds().grown(margin));
+        around_a.is_apart(&around_b, self.axes) || {
+            let (first, second) = (|point| a.distance(point), |point| b.distance(point));
+            let sets = TwoSets { first, second, margin, axes: self.axes };
+            sets.are_apart(&around_a.intersection(&around_b))
+        }
     }
 }
 

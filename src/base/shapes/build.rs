@@ -73,7 +73,7 @@ impl Shape {
             Self::Union(shapes) => {
                 let union = Union::new(check.parts(shapes, Self::surface)?, axes);
                 if !union.is_apart(union.tolerance()) {
-                    return none("the parts of the union touch each other");
+                    return none("the parts of the union touch each other, or nearly so");
                 }
                 Box::new(union)
             }
@@ -82,7 +82,9 @@ impl Shape {
                 let hole = hole.surface(dimension, folder, &check.entry(1))?;
                 let difference = DifferenceRegion::new(whole, hole, axes);
                 if !difference.is_hollow(difference.tolerance()) {
-                    return none("the hole of the difference cuts the surface of the first shape");
+                    return none(
+                        "the hole of the difference cuts the surface of the first shape, or nearly so",
+                    );
                 }
                 Box::new(difference)
             }

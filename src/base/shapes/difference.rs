@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::apart::TwoSets;
 use super::boolean::volume_of_boxes;
 use super::cavity;
 use super::moments::Moments;
@@ -29,7 +30,12 @@ impl<R: Region + ?Sized> DifferenceRegion<R> {
 
     /// Whether the hole, extended by `margin` \[m\], is certainly inside the whole.
     pub fn is_hollow(&self, margin: f64) -> bool {
-        holds(self.whole.as_ref(), &self.hole.bounds().grown(margin), self.axes)
+        let (whole, hole) = (self.whole.as_ref(), self.hole.as_ref());
+        let around = hole.bounds().grown(margin);
+        is_box_around(whole, &around, self.axes) || {
+            let (first, second) = (|point| -whole.distance(point), |point| hole.distance(point));
+            TwoSets { first, second, margin, axes: self.axes }.are_apart(&around)
+        }
     }
 }
 
@@ -128,12 +134,10 @@ fn bounds_of<R: Region + ?Sized>(whole: &R, hole: &R, axes: usize) -> Aabb {
     bounds
 }
 
-/// Whether `region` certainly contains `part`: either it is a single box that does, or the circumscribed ball
-/// of `part` is inside.
-fn holds<R: Region + ?Sized>(region: &R, part: &Aabb, axes: usize) -> bool {
+/// Whether `region` is a single box that contains `part`.
+fn is_box_around<R: Region + ?Sized>(region: &R, part: &Aabb, axes: usize) -> bool {
     let mut faces = [Vec::new(), Vec::new(), Vec::new()];
-    if region.box_faces(&mut faces) && faces[0].len() == 2 {
-        return (0..axes).all(|k| faces[k][0] <= part.min[k] && part.max[k] <= faces[k][1]);
-    }
-    region.distance(part.center()) <= -0.5 * part.extent().length()
+    region.box_faces(&mut faces)
+        && faces[0].len() == 2
+        && (0..axes).all(|k| faces[k][0] <= part.min[k] && part.max[k] <= faces[k][1])
 }

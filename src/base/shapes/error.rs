@@ -204,7 +204,7 @@ impl FillErrorKind {
             Self::Unbounded => "cut it with others: `Intersection([Box(...), HalfSpace(...)])`".into(),
             Self::NoSurface(_) => {
                 "a single shape has them, moved, turned or equally scaled; so has a stretched sphere, a mesh, a `Union` of \
-                 shapes that are apart, and a `Difference` whose hole is all inside; draw the outline of others as a `Polygon`, or use several tools"
+                 shapes that are apart, and a `Difference` whose hole is all inside; draw the outline of others as a `Polygon` (in space as an `Extrusion` or a `Mesh`), or use several tools"
                     .into()
             }
             Self::NotConcentric => {

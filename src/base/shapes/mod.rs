@@ -1,5 +1,6 @@
 //! Shapes and their filling with particles: the fields `shape`, `lattice` and `spacing` of a scene.
 
+mod apart;
 mod automatic;
 mod block;
 mod boolean;
