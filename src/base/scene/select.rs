@@ -43,8 +43,9 @@ pub enum SurfacePart {
     All,
     /// The parts that face away from the body.
     Outer,
-    /// The parts that face the body itself: holes, bores, the sides of notches. The bottom of an open notch
-    /// faces away; `Of` the shape that was cut out has it too.
+    /// The parts that face the body itself or its image across a symmetry plane or a period: holes, bores,
+    /// the sides of notches. The bottom of an open notch faces away; `Of` the shape that was cut out has it
+    /// too.
     Inner,
     /// The part that lies on the surface of this shape, such as the cylinder with which a hole was cut.
     Of(Shape),

@@ -4,11 +4,12 @@ use glam::DVec3;
 
 use super::part::Part;
 use crate::parallel::{BlockSum, sum_over_blocks};
-use crate::plugin::{BodyKind, BodyPlan, Selection, SetupError, SimBuilder, selected_facets};
+use crate::plugin::{BodyKind, BodyPlan, Selection, SetupError, SimBuilder};
 use crate::rigid::{RigidBodies, RigidState, Wrench};
 use crate::scene::{Face, Select};
 use crate::schedule::Step;
 use crate::shapes::Region;
+use crate::skins::selected_facets;
 use crate::world::BodyId;
 
 /// Distance from the surface, over the spacing, up to which a point is on it.
@@ -45,7 +46,7 @@ pub(super) fn face_part(
         return Ok(None);
     };
     let (mut area, mut moment) = (0.0, DVec3::ZERO);
-    for loaded in selected_facets(select, id, &facets, sim)? {
+    for loaded in selected_facets(select, id, &facets, &[], sim)? {
         let part = loaded.share * facets.normal_and_measure(loaded.facet as usize).1;
         area += part;
         moment += part * loaded.middle(&facets);

@@ -17,11 +17,11 @@ use super::field::VectorField;
 use super::pulses;
 use super::symmetry::planes_of;
 use crate::notation::{place, quantity};
-use crate::plugin::{BodyPlan, Offer, SelectedFacet, Selection, SetupError, SimBuilder, selected_facets};
+use crate::plugin::{BodyPlan, Offer, Selection, SetupError, SimBuilder};
 use crate::scene::{Expression, Select};
 use crate::schedule::{AccountKind, Mode, Resources, Run, Shared, Stage, Step, StepError, System};
 use crate::shapes::directed_area;
-use crate::skins::{Last, Patch, Skin, SkinColumns, Wanted};
+use crate::skins::{Last, Patch, SelectedFacet, Skin, SkinColumns, Wanted, selected_facets};
 use crate::solids::CORRECTED_STRESS;
 use crate::symmetry::{Repeat, periods_of};
 use crate::world::{
@@ -111,7 +111,9 @@ pub(super) fn skins_of(
     // A face of a shape without one: the load on particles says what is wrong.
     let has_any = |skins: &Vec<Arc<Skin>>| -> Result<bool, SetupError> {
         for skin in skins {
-            if !selected_facets(select, skin.body, &skin.facets, sim)?.is_empty() {
+            if !selected_facets(select, skin.body, &skin.facets, &repeats_of(sim.body(skin.body), sim), sim)?
+                .is_empty()
+            {
                 return Ok(true);
             }
         }
@@ -132,9 +134,12 @@ fn skin_of(select: &Select, body: &BodyPlan, sim: &SimBuilder<'_>) -> Option<Arc
     }
     let shape = &sim.scene().bodies[body.id.0].shape;
     // Vertices where the body goes on are carried from both sides, so that a uniform load stays uniform.
-    let repeats: Vec<Repeat> =
-        planes_of(body, sim).iter().map(Repeat::from).chain(periods_of(body, sim)).collect();
-    Skin::of(body, shape, &repeats, sim.dimension(), sim.folder()).map(Arc::new)
+    Skin::of(body, shape, &repeats_of(body, sim), sim.dimension(), sim.folder()).map(Arc::new)
+}
+
+/// Where a body continues, whether the conditions of the planes are built already or not.
+fn repeats_of(body: &BodyPlan, sim: &SimBuilder<'_>) -> Vec<Repeat> {
+    planes_of(body, sim).iter().map(Repeat::from).chain(periods_of(body, sim)).collect()
 }
 
 /// The loaded surface in a scene.
@@ -162,7 +167,10 @@ pub(super) fn apply(
             (loaded, loaded.middle(&skin.facets), area)
         };
         let facets: Vec<_> =
-            selected_facets(select, skin.body, &skin.facets, sim)?.into_iter().map(of).collect();
+            selected_facets(select, skin.body, &skin.facets, &repeats_of(sim.body(skin.body), sim), sim)?
+                .into_iter()
+                .map(of)
+                .collect();
         let chosen: Vec<u32> = facets.iter().map(|(loaded, ..)| loaded.facet).collect();
         total += facets.iter().map(|facet| facet.2).sum::<f64>();
         if facets.is_empty() {

@@ -79,6 +79,19 @@ fn a_pressure_all_around_a_body_has_no_resultant() {
 }
 
 #[test]
+fn a_bore_that_a_symmetry_plane_cuts_faces_its_body() {
+    let quarter =
+        "Intersection([Ring(center: (0, 0), inner: 0.03, outer: 0.06), Box(min: (0, 0), max: (1, 1))])";
+    let planes = "Symmetry(plane: X, at: 0), Symmetry(plane: Y, at: 0)";
+    for (surface, radius) in [("Inner", 0.03), ("Outer", -0.06), ("All", -0.03)] {
+        let load = format!(r#"Pressure(on: Select(body: "b", surface: {surface}), value: "1000"), {planes}"#);
+        let found = force("Two", quarter, "BodyFitted()", &load);
+        let expected = 1000.0 * radius * DVec3::new(1.0, 1.0, 0.0);
+        assert!(found.distance(expected) < 0.03 * expected.length(), "{surface}: {found} {expected}");
+    }
+}
+
+#[test]
 fn a_pressure_on_an_inclined_side_is_along_its_normal() {
     let wedge = "Extrusion(polygon: [(0, 0), (0.1, 0), (0.1, 0.05), (0.0, 0.1)], from: 0, to: 0.03)";
     let load = r#"Pressure(on: Select(body: "b", surface: Facing((1, 2, 0))), value: "1000")"#;

@@ -19,18 +19,22 @@
 
 mod carriers;
 mod columns;
+mod facet_selection;
 mod following;
 mod heat;
 mod patch;
 mod rule;
 mod scale;
+mod selected_facet;
 mod skin;
 #[cfg(test)]
 pub(crate) mod tests;
 mod vertex;
 
 pub(crate) use columns::{SkinColumns, SkinView};
+pub(crate) use facet_selection::selected_facets;
 pub(crate) use patch::{Last, Patch, Wanted};
 pub(crate) use rule::QuadratureRule;
+pub(crate) use selected_facet::SelectedFacet;
 pub(crate) use skin::Skin;
 pub(crate) use vertex::Vertex;

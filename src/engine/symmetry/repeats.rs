@@ -44,6 +44,20 @@ impl Repeat {
         }
     }
 
+    /// The place of the body that is seen at `x`, m: of an image that of which it is one. `middle`, m, is on
+    /// the side of a plane where the body is.
+    pub fn place_seen(&self, mut x: DVec3, middle: DVec3) -> DVec3 {
+        match *self {
+            Self::Mirror { axis, at } => {
+                if (x[axis] - at) * (middle[axis] - at) < 0.0 {
+                    x[axis] = 2.0 * at - x[axis];
+                }
+            }
+            Self::Period { axis, min, length } => x[axis] = min + (x[axis] - min).rem_euclid(length),
+        }
+        x
+    }
+
     /// The maps to the images of a place that is within reach of a side.
     pub(super) fn near(&self, place: DVec3, reach: f64) -> [Option<Map>; 2] {
         match *self {

@@ -12,8 +12,10 @@ use super::surface::MeasuredPoints;
 use super::taken::Extremal;
 use crate::fields::ChosenField;
 use crate::notation;
-use crate::plugin::{BodyKind, BodyPlan, SelectedFacet, SimBuilder, selected_facets};
+use crate::plugin::{BodyKind, BodyPlan, SimBuilder};
 use crate::scene::{self, Line, Problem, Quantity, Reduction, RelativeTo, Select};
+use crate::skins::{SelectedFacet, selected_facets};
+use crate::symmetry::repeats_of;
 use crate::world::BodySet;
 
 /// Place of a probe.
@@ -207,7 +209,10 @@ fn surface(
     if place.take != Reduction::Mean {
         check_number(place, &field)?;
     }
-    let chosen = selected_facets(on, body.id, &facets, sim).map_err(|error| at_probe(place.k, error))?;
+    // Faults of planes and periods are those of the formulation.
+    let repeats = repeats_of(body, 0.0, sim).unwrap_or_default();
+    let chosen = selected_facets(on, body.id, &facets, &repeats, sim);
+    let chosen = chosen.map_err(|error| at_probe(place.k, error))?;
     let centers: Vec<DVec3> = chosen.iter().map(|part| part.middle(&facets)).collect();
     let found = Stencil::of_points(&centers, body, sim.dimension().count());
     let area = |part: &SelectedFacet| part.share * facets.normal_and_measure(part.facet as usize).1;

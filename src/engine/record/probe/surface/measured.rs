@@ -6,10 +6,10 @@ use super::points::{PointBelow, SurfacePoints};
 use super::shifts::shifts;
 use crate::fields::ChosenField;
 use crate::kernels::Kernel;
-use crate::plugin::{BodyPlan, Distances, Offer, SelectedFacet, SimBuilder};
+use crate::plugin::{BodyPlan, Distances, Offer, SimBuilder};
 use crate::record::probe::stencil::Stencil;
 use crate::shapes::Facets;
-use crate::skins::Skin;
+use crate::skins::{SelectedFacet, Skin};
 use crate::symmetry::{Repeat, maps_of, repeats_of};
 
 /// Distance from a symmetry plane, or the end of a period, over the spacing up to which a facet lies in it.
