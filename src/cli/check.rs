@@ -62,7 +62,7 @@ struct CheckReport<'a> {
 pub fn execute(arguments: &CheckArguments, registry: &Registry) -> Result<(), CommandFailure> {
     let (scene, source) = arguments.scene.load(registry)?;
     let mut sim = assembly::build(&scene, &source, registry)?;
-    sim.start().map_err(|error| CommandFailure::of_run(&error, &source))?;
+    sim.start().map_err(|error| CommandFailure::of_start(&error, &source))?;
     let bodies = BodyReport::all(&scene, &sim, registry)?;
     let memory = memory(&sim);
     let trial = TrialSteps::run(&mut sim, &source).inspect_err(|_| warn(&sim))?;

@@ -111,10 +111,11 @@ impl Execution {
         if let Err(error) = &steps {
             end_if_alone_with(error);
         }
-        if let Some(failure) =
-            steps.as_ref().err().and_then(|error| CommandFailure::of_scene(error, &self.source))
+        if let Err(error) = &steps
+            && progress.steps(&self.sim) == 0
+            && error.problem().is_some()
         {
-            return Err(failure);
+            return Err(CommandFailure::of_start(error, &self.source));
         }
         let failed_state = steps.is_err().then(|| self.keep_failed_state()).flatten();
         let finished = self.sim.finish();
@@ -145,8 +146,8 @@ impl Execution {
             }
         }
         if let Err(error) = steps {
-            let state = failed_state.map(|file| format!("\nthe state is kept in {}", file.display()));
-            return Err(CommandFailure::Run(format!("{error}{}", state.unwrap_or_default())));
+            let kept = failed_state.map(|file| format!("\nthe state is kept in {}", file.display()));
+            return Err(CommandFailure::of_run(&error, &self.source, kept.unwrap_or_default()));
         }
         finished.map_err(|error| CommandFailure::Run(error.to_string()))?;
         if ranks::any(interrupt.asked()) && !self.sim.is_finished() {

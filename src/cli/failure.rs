@@ -21,6 +21,9 @@ pub enum CommandFailure {
     /// The run failed, or a file could not be read or written. Exit code 1.
     #[error("error: {0}")]
     Run(String),
+    /// An item of the scene failed in a run; where its state is kept. Exit code 1.
+    #[error("{0}{1}")]
+    Item(SceneError, String),
     /// Another of several ranks has printed the error already; its exit code.
     #[error("the run has failed")]
     #[cfg_attr(
@@ -34,21 +37,28 @@ pub enum CommandFailure {
 }
 
 impl CommandFailure {
-    /// The failure of a run that a value of its scene makes impossible; none for another error.
-    pub(super) fn of_scene(error: &RunError, source: &Source) -> Option<Self> {
-        let problem = error.problem()?;
-        Some(Self::Scene(SceneError { source: source.clone(), problems: vec![problem] }))
+    /// The failure of a run before its first step: what fails then is the scene, if the error has a place in
+    /// it.
+    pub(super) fn of_start(error: &RunError, source: &Source) -> Self {
+        match in_scene(error, source) {
+            Some(error) => Self::Scene(error),
+            None => Self::Run(error.to_string()),
+        }
     }
 
-    /// The failure of a run of a scene.
-    pub(super) fn of_run(error: &RunError, source: &Source) -> Self {
-        Self::of_scene(error, source).unwrap_or_else(|| Self::Run(error.to_string()))
+    /// The failure of a run later; `kept` says where its state is kept.
+    pub(super) fn of_run(error: &RunError, source: &Source, kept: String) -> Self {
+        match in_scene(error, source) {
+            Some(error) => Self::Item(error, kept),
+            None => Self::Run(format!("{error}{kept}")),
+        }
     }
 
     pub(super) fn report(&self) {
         match self {
             Self::Told(_) => {}
             Self::Scene(error) if in_colour() => complain(&error.styled()),
+            Self::Item(error, kept) if in_colour() => complain(&format!("{}{kept}", error.styled())),
             Self::Usage(text) | Self::Run(text) if in_colour() => {
                 complain(&format!("\u{1b}[1;31merror\u{1b}[0m: {text}"));
             }
@@ -60,11 +70,16 @@ impl CommandFailure {
     pub(super) fn code(&self) -> u8 {
         match self {
             Self::Scene(_) | Self::Usage(_) => 2,
-            Self::Run(_) => 1,
+            Self::Run(_) | Self::Item(..) => 1,
             Self::Told(code) => *code,
             Self::Interrupted(signal) => exit_code(*signal),
         }
     }
+}
+
+/// The error of a run at its place in the scene, if it has one.
+fn in_scene(error: &RunError, source: &Source) -> Option<SceneError> {
+    error.problem().map(|problem| SceneError { source: source.clone(), problems: vec![problem] })
 }
 
 /// For commands with an option `--force`.

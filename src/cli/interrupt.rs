@@ -39,7 +39,7 @@ fn stop(signal: u8) {
     if ASKED.swap(signal, Ordering::SeqCst) != 0 {
         std::process::exit(i32::from(exit_code(signal)));
     }
-    complain("stopping after this step; a second Ctrl-C ends the program at once");
+    complain("stopping after this step; another signal ends the program at once");
 }
 
 /// The exit code of a program ended by a signal, as in shells: 130 for Ctrl-C, 143 for SIGTERM, 129 for

@@ -133,10 +133,12 @@ impl RunError {
         matches!(self, Self::Checkpoint(_) | Self::Record(_) | Self::Step(StepError::Output(_)))
     }
 
-    /// The problem of the scene that the error comes from; none if the values of the scene could be right.
+    /// The problem of the scene that the error comes from; none if its values could be right and none of its
+    /// items has failed.
     pub fn problem(&self) -> Option<Problem> {
         match self {
             Self::TooManySteps { .. } => Some(Problem::at_path("time.end", self.to_string())),
+            Self::Step(StepError::OfItem { item, error }) => Some(item.problem("", error.to_string(), "")),
             _ => None,
         }
     }

@@ -36,7 +36,7 @@ impl TrialSteps {
         let begun = Instant::now();
         let mut dt = 0.0;
         while !sim.is_finished() && sim.clock().step < TRIAL_STEPS && begun.elapsed() < TRIAL {
-            sim.step().map_err(|error| CommandFailure::of_run(&error, source))?;
+            sim.step().map_err(|error| CommandFailure::of_start(&error, source))?;
             if sim.clock().step == 1 {
                 dt = sim.clock().dt;
             }

@@ -112,10 +112,13 @@ fn start(
     let mut world = spawn::spawn(&sim);
     let mut resources = Resources::with_shared(std::mem::take(&mut sim.shared));
     let held = BodySet::new(sim.held.take());
-    for step in std::mem::take(&mut sim.setup) {
+    for (item, step) in std::mem::take(&mut sim.setup) {
         let mut setup =
             Setup { world: &world, resources: &mut resources, held: &held, warnings: sim.warnings.get_mut() };
-        step(&mut setup).map_err(|error| at_scene(scene, error))?;
+        step(&mut setup).map_err(|error| match &item {
+            Some(item) => error.into_problems(item),
+            None => at_scene(scene, error),
+        })?;
     }
     let schedule = Schedule::new(std::mem::take(&mut sim.systems), &sim.sub_cycled)
         .map_err(|e| vec![Problem::new(e.to_string())])?;

@@ -52,13 +52,18 @@ fn a_traction_on_a_bore_acts_on_its_area() {
 fn a_load_without_a_value_is_told_with_its_place() {
     let text = r#"(dimension: Two, materials: {"soft": StVenantKirchhoff(density: 1000, young: 1e6, poisson: 0.3)},
         bodies: [(name: "b", material: "soft", shape: Box(min: (0, 0), max: (0.2, 0.05)), spacing: 0.01, formulation: TotalLagrangian)],
-        conditions: [Traction(on: Select(body: "b", face: MaxX), value: ("sqrt(-1 - t)", 0))], time: (end: 1e-5))"#;
+        conditions: [Traction(on: Select(body: "b", face: MinX), value: (1, 0)),
+                     Traction(on: Select(body: "b", face: MaxX), value: ("sqrt(-1 - t)", 0))], time: (end: 1e-5))"#;
     let (scene, source) = parse(Source::new("test.ron", text.to_owned())).unwrap_or_else(|e| panic!("{e}"));
     let mut sim = build(&scene, &source, &Registry::standard()).unwrap_or_else(|e| panic!("{e}"));
-    let error = sim.run(|_| true).expect_err("no load").to_string();
+    let error = sim.run(|_| true).expect_err("no load");
     let wanted =
         "the load must be finite, found (NaN, 0) N at the reference position (0.2, 0.0025) m and 0 s";
-    assert!(error.contains(wanted), "{error}");
+    assert!(error.to_string().contains(wanted), "{error}");
+    let problem = error.problem().expect("a place in the scene");
+    let item = problem.span(&source).map(|span| &source.text[span]);
+    assert_eq!(item, Some("Traction"), "{}", problem.render(&source));
+    assert!(problem.render(&source).contains("test.ron:4:22"), "{}", problem.render(&source));
 }
 
 #[test]

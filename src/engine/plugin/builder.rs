@@ -185,6 +185,7 @@ impl<'s> SimBuilder<'s> {
 
     /// Adds a system.
     pub fn add_system(&mut self, system: System) {
+        let system = system.added_by(self.handed.by.clone());
         let phases = system.bodies_without_phases().map(|bodies| self.phases_of(bodies));
         self.systems.push(match phases {
             Some(phases) => system.on_phases(phases),
@@ -223,7 +224,7 @@ impl<'s> SimBuilder<'s> {
 
     /// Adds something to do once, after the particles are spawned and before the first step.
     pub fn add_setup(&mut self, step: impl FnOnce(&mut Setup<'_>) -> Result<(), SetupError> + 'static) {
-        self.setup.push(Box::new(step));
+        self.setup.push((self.handed.by.clone(), Box::new(step)));
     }
 
     /// The rows that a selection means; `field` is its name among the parameters, for errors. The bodies keep

@@ -1,6 +1,7 @@
 //! Work done once, between spawning the particles and the first step.
 
 use super::error::SetupError;
+use crate::scene::Item;
 use crate::schedule::Resources;
 use crate::world::{BodySet, World};
 
@@ -17,4 +18,5 @@ pub struct Setup<'a> {
     pub warnings: &'a mut Vec<String>,
 }
 
-pub(crate) type SetupStep = Box<dyn FnOnce(&mut Setup<'_>) -> Result<(), SetupError>>;
+/// A step of it, with the item of the scene that has added it, for errors.
+pub(crate) type SetupStep = (Option<Item>, Box<dyn FnOnce(&mut Setup<'_>) -> Result<(), SetupError>>);

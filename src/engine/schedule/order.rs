@@ -96,7 +96,7 @@ impl Schedule {
                 if let Some(undeclared) = step.world.undeclared() {
                     return Err(undeclared.clone().into());
                 }
-                done?;
+                done.map_err(|error| error.of(system.item.as_ref()))?;
                 *time += start.elapsed();
             }
         }

@@ -8,6 +8,7 @@ use super::limits::TimeStepLimits;
 use super::resources::Resources;
 use super::step_part::StepPart;
 use crate::notation::{quantity, quantity_to};
+use crate::scene::Item;
 use crate::world::{MissingColumn, Undeclared, World};
 
 /// Where the run is in time.
@@ -117,9 +118,27 @@ pub enum StepError {
         /// The error.
         message: String,
     },
+    /// A system of a plugin failed that an item of the scene has added.
+    #[error("{error}")]
+    OfItem {
+        /// The item.
+        item: Item,
+        /// The error.
+        error: Box<StepError>,
+    },
 }
 
 impl StepError {
+    /// The same with the item of the scene that has added the system.
+    pub(super) fn of(self, item: Option<&Item>) -> Self {
+        match (self, item) {
+            (error @ Self::System { .. }, Some(item)) => {
+                Self::OfItem { item: item.clone(), error: Box::new(error) }
+            }
+            (error, _) => error,
+        }
+    }
+
     /// The same with the known cause, which starts with `: `.
     #[must_use]
     pub fn with_detail(mut self, text: &str) -> Self {

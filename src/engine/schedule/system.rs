@@ -7,6 +7,7 @@ use super::resources::Resources;
 use super::stage::Stage;
 use super::step::{Step, StepError};
 use super::step_part::Cadence;
+use crate::scene::Item;
 use crate::world::{Access, BodySet, Column, Declared, Mode, PhaseId};
 
 /// The work of a system. A closure is enough for a system without state of its own.
@@ -59,6 +60,8 @@ pub struct System {
     pub(super) after: Vec<String>,
     pub(super) after_any: Vec<String>,
     pub(super) work: Box<dyn Run>,
+    /// Item of the scene that has added it, for errors.
+    pub(super) item: Option<Item>,
 }
 
 impl System {
@@ -80,6 +83,7 @@ impl System {
             after: Vec::new(),
             after_any: Vec::new(),
             work: Box::new(work),
+            item: None,
         }
     }
 
@@ -135,6 +139,12 @@ impl System {
         Q::declare(&mut system.access);
         system.bodies = Some(of);
         system.by_body()
+    }
+
+    /// Names the item of the scene that has added it.
+    pub(crate) fn added_by(mut self, item: Option<Item>) -> Self {
+        self.item = item;
+        self
     }
 
     /// Declares that the system reads column `T`.
