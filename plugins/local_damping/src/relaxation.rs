@@ -20,6 +20,8 @@ use crate::stiffness::{LastMotion, PreviousForce, look};
 
 /// Name of the systems that look at the motion.
 const LOOK: &str = "relaxing_motion";
+/// Displacement off equilibrium, over the whole, from which on the user is told.
+const OFF: f64 = 1e-3;
 
 /// The relaxing bodies of a scene, and their motion.
 pub struct Relaxing {
@@ -153,11 +155,13 @@ impl Relaxation {
         let now = step.clock.end();
         if now >= relaxing.after && moving <= relaxing.tolerance * relaxing.tolerance * elastic {
             *step.stop = Some(format!("in static equilibrium to {:.0e}", relaxing.tolerance));
-        } else if now >= self.end * (1.0 - 1e-9) {
+        } else if now >= self.end * (1.0 - 1e-9) && moving > OFF * OFF * elastic {
+            // Energies are quadratic in what displacements are off by.
             let text = format!(
-                "`local_damping` has not brought the bodies to rest by the end of the run: kinetic energy and that of the forces out of balance are {} beside an elastic energy of {}, so that positions and stresses are not those of equilibrium; a later `end` lets it go on",
+                "`local_damping` has not brought the bodies to rest by the end of the run: kinetic energy and that of the forces out of balance are {} beside an elastic energy of {}, so that displacements and stresses are some {:.1} % off equilibrium; a later `end` lets it go on",
                 quantity(moving, "J"),
-                quantity(elastic, "J")
+                quantity(elastic, "J"),
+                100.0 * (moving / elastic).sqrt().min(1.0)
             );
             if !step.warnings.contains(&text) {
                 step.warnings.push(text);

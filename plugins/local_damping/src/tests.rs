@@ -231,13 +231,26 @@ fn bodies_that_relax_share_their_rate_and_their_end_wherever_the_plugin_is_state
 
 #[test]
 fn a_relaxation_that_has_not_come_to_rest_at_the_end_says_so() {
-    let warned = |damping: &str| {
-        let mut sim = simulation(&cantilever("-10.0", damping, 0.2));
+    let told = |damping: &str, end: f64| {
+        let mut sim = simulation(&cantilever("-10.0", damping, end));
         sim.run(|_| true).expect("a run");
-        sim.warnings().iter().any(|text| text.contains("has not brought the bodies to rest"))
+        let told = sim.warnings().iter().find(|text| text.contains("has not brought the bodies to rest"));
+        (told.cloned(), tip(&sim))
     };
-    assert!(warned("local_damping(mode: Relaxation())"));
-    assert!(!warned("local_damping(mode: Relaxation(stop: false))") && !warned("local_damping(rate: 1.0)"));
+    assert!(told("local_damping(mode: Relaxation(stop: false))", 0.2).0.is_none());
+    assert!(told("local_damping(rate: 1.0)", 0.2).0.is_none());
+    let (_, whole) = told("local_damping(mode: Relaxation())", 20.0);
+    let percent = |text: &str| -> f64 {
+        let (_, rest) = text.split_once("are some ").expect("how much");
+        rest.split(' ').next().and_then(|number| number.parse().ok()).expect("a number")
+    };
+    for end in [0.8, 1.6] {
+        let (text, found) = told("local_damping(mode: Relaxation())", end);
+        let (off, said) = (100.0 * (1.0 - found / whole), percent(&text.expect("a warning")));
+        assert!(said > off && said < 2.0 * off, "{end} s: {said} % said, {off} % off");
+    }
+    let (text, found) = told("local_damping(mode: Relaxation())", 3.0);
+    assert!(text.is_none() && (found / whole - 1.0).abs() < 1e-3, "{text:?} {}", found / whole - 1.0);
 }
 
 #[test]
