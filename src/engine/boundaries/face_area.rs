@@ -39,8 +39,7 @@ fn whole_face(select: &Select, body: &BodyPlan) -> Option<f64> {
     let (axis, _) = select.face.filter(|_| select.within.is_none() && select.nearest.is_none())?.outward();
     let sides = body.bounds.extent();
     let of_box: f64 = sides.to_array().into_iter().filter(|side| *side > 0.0).product();
-    let filled: f64 = body.sites.iter().map(|site| site.volume).sum();
-    ((filled / of_box - 1.0).abs() < FILLED).then(|| of_box / sides[axis])
+    ((body.volume() / of_box - 1.0).abs() < FILLED).then(|| of_box / sides[axis])
 }
 
 /// The outward normal of the face that a load needs.

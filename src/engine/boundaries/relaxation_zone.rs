@@ -124,7 +124,7 @@ impl RelaxationZone {
         let given = field.axes();
         Ok(FlowZone {
             bodies: bodies.iter().map(|body| body.id).collect(),
-            mass: bodies.iter().map(|body| mass(body)).sum(),
+            mass: bodies.iter().map(|body| body.mass()).sum(),
             axes: flags(given),
             field,
             rate,
@@ -158,9 +158,4 @@ impl RelaxationZone {
             }
         }
     }
-}
-
-/// Mass of a fluid at the start, kg.
-fn mass(body: &BodyPlan) -> f64 {
-    body.material.density * body.sites.iter().map(|site| site.volume).sum::<f64>()
 }

@@ -106,9 +106,8 @@ impl<'s> SimBuilder<'s> {
     /// has hardly any other energy.
     pub fn work_of_weight(&self) -> f64 {
         let of = |body: &BodyPlan| {
-            let volume: f64 = body.sites.iter().map(|site| site.volume).sum();
             let height = body.bounds.extent().abs().dot(self.gravity().abs());
-            if height.is_finite() { body.material.density * volume * height } else { 0.0 }
+            if height.is_finite() { body.mass() * height } else { 0.0 }
         };
         self.bodies().iter().filter(|body| body.kind != BodyKind::Boundary).map(of).sum()
     }

@@ -91,6 +91,16 @@ impl BodyPlan {
         self.offers.contains(&offer)
     }
 
+    /// Sum of the volumes of its particles, m3 (m2 in two dimensions).
+    pub fn volume(&self) -> f64 {
+        self.sites.iter().map(|site| site.volume).sum()
+    }
+
+    /// Mass of its particles, by the density of its material, kg (kg/m in two dimensions).
+    pub fn mass(&self) -> f64 {
+        self.material.density * self.volume()
+    }
+
     /// The law of the solid that the body is made of.
     ///
     /// # Errors

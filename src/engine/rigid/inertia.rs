@@ -26,7 +26,7 @@ impl MassProperties {
     pub fn new(body: &BodyPlan, surface: &dyn Surface, dimension: Dimension) -> Self {
         let share = if surface.bounds().is_bounded() { 1.0 } else { UNBOUNDED };
         let density = share * body.material.density;
-        let volume: f64 = body.sites.iter().map(|site| site.volume).sum();
+        let volume = body.volume();
         let moments = match surface.moments() {
             Some(moments) => moments,
             None if surface.bounds().is_bounded() => counted_moments(surface, dimension.count()),

@@ -62,9 +62,7 @@ impl EnergyGrowth {
 /// volume, to a few digits.
 pub(super) fn resolution(body: &BodyPlan) -> f64 {
     match &body.material.law {
-        Law::Solid(law) => {
-            law.elastic().young * body.sites.iter().map(|site| site.volume).sum::<f64>() * DIGITS
-        }
+        Law::Solid(law) => law.elastic().young * body.volume() * DIGITS,
         _ => 0.0,
     }
 }

@@ -43,9 +43,8 @@ pub(super) struct HourglassShare {
 impl HourglassShare {
     /// Over the volumes and moduli of the bodies.
     pub fn new(sim: &SimBuilder<'_>) -> Self {
-        let volume = |body: &BodyPlan| body.sites.iter().map(|site| site.volume).sum();
         Self {
-            volumes: sim.bodies().iter().map(volume).collect(),
+            volumes: sim.bodies().iter().map(BodyPlan::volume).collect(),
             resolution: sim.bodies().iter().map(resolution).collect(),
             ..Self::default()
         }

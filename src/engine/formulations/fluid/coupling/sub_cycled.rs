@@ -100,8 +100,7 @@ fn least_time(id: BodyId, thickness: f64, sim: &SimBuilder<'_>) -> LeastTime {
 
 /// Twice the volume of a body over its surface, m; infinite where its shape is not known.
 fn mean_thickness(id: BodyId, sim: &SimBuilder<'_>) -> f64 {
-    let volume: f64 = sim.body(id).sites.iter().map(|site| site.volume).sum();
-    surface_area(id, sim).map_or(f64::INFINITY, |area| 2.0 * volume / area)
+    surface_area(id, sim).map_or(f64::INFINITY, |area| 2.0 * sim.body(id).volume() / area)
 }
 
 /// The first fluid.

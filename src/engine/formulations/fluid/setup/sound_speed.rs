@@ -56,7 +56,7 @@ pub fn estimate(bodies: &mut [BodyPlan], scene: &Scene) -> Result<(), Vec<Proble
 fn mean_velocity(bodies: &[BodyPlan]) -> DVec3 {
     let (mut mass, mut momentum) = (0.0, DVec3::ZERO);
     for body in bodies {
-        let of_body = body.material.density * body.sites.iter().map(|site| site.volume).sum::<f64>();
+        let of_body = body.mass();
         mass += of_body;
         momentum += of_body * body.velocity.map_or(DVec3::ZERO, |v| v.0);
     }

@@ -64,7 +64,7 @@ impl SeenMotions {
         let rigid = ids.into_iter().map(|id| sim.body(id)).filter(|body| body.kind == BodyKind::Rigid);
         let motion = |body: &BodyPlan| SeenMotion {
             body: body.id,
-            displaced: densest * body.sites.iter().map(|site| site.volume).sum::<f64>(),
+            displaced: densest * body.volume(),
             known: KnownMotion::default(),
             now: None,
         };
