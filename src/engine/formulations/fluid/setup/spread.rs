@@ -45,22 +45,30 @@ impl AllFluids {
     }
 
     fn spread_known(&self, pressure: &mut [Option<f64>], list: &NeighborList) {
-        let mut rest: Vec<usize> = (0..pressure.len()).filter(|&i| pressure[i].is_none()).collect();
+        let unknown = |pressure: &[Option<f64>]| -> Vec<usize> {
+            (0..pressure.len()).filter(|&i| pressure[i].is_none()).collect()
+        };
+        let find = |among: &[usize], pressure: &[Option<f64>], far| -> Vec<(usize, f64)> {
+            let beside = |&i: &usize| Some((i, self.beside(i, pressure, list.row(i), far)?));
+            among.par_iter().filter_map(beside).collect()
+        };
+        let (mut near, mut is_near) = (unknown(pressure), vec![false; pressure.len()]);
         loop {
-            let found = |far| -> Vec<(usize, f64)> {
-                rest.par_iter()
-                    .filter_map(|&i| Some((i, self.beside(i, pressure, list.row(i), far)?)))
-                    .collect()
-            };
-            let mut next = found(false);
+            let mut next = find(&near, pressure, false);
             if next.is_empty() {
-                next = found(true);
+                next = find(&unknown(pressure), pressure, true);
             }
             if next.is_empty() {
                 break;
             }
-            next.into_iter().for_each(|(i, p)| pressure[i] = Some(p));
-            rest.retain(|&i| pressure[i].is_none());
+            next.iter().for_each(|&(i, p)| pressure[i] = Some(p));
+            // For all others nothing has changed.
+            let beside = next.iter().flat_map(|&(i, _)| list.row(i)).map(|&j| j as usize);
+            near.clear();
+            near.extend(
+                beside.filter(|&j| pressure[j].is_none() && !std::mem::replace(&mut is_near[j], true)),
+            );
+            near.iter().for_each(|&j| is_near[j] = false);
         }
     }
 
