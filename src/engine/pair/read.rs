@@ -19,7 +19,7 @@ pub trait ReadSet: Copy + Send + Sync + 'static {
     type Guards<'g>;
     /// The columns as slices.
     type Slices<'s>: Copy + Send + Sync;
-    /// The values of four rows, as [`Value::Four`](crate::world::Value::Four) says: vectors, numbers,
+    /// The values of four rows, as [`Value::Four`] says: vectors, numbers,
     /// matrices.
     type Four<A: Arithmetic>: Copy;
 

@@ -14,8 +14,7 @@
 //! that cross take over; below a ridge at which the normal turns by less, it is the cosine of that angle from
 //! both sides, and what depends on the normal is a mean of both faces. The deepest point of a circle has the
 //! same weight. A face that stands across the other one has none, and all of it where it is inclined to that
-//! by less than 66 degrees; edges that cross have that of their
-//! [`Crossing`](crate::contact::bodies::Crossing).
+//! by less than 66 degrees; edges that cross have that of their crossing.
 //!
 //! Points of edges and corners of a body come on top of those of its faces, which stand for their whole area
 //! already: while a face lies on another one they have a fifth of their weight, and all of it when the body

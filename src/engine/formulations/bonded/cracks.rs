@@ -2,9 +2,9 @@
 //! along them.
 //!
 //! A [`FoldedTerm`](crate::solids::FoldedTerm) of a particle at the edge of a crack gets the fit over the
-//! intact neighbours (see [`edges`](super::edges)), so that its energy and force are those of a body without
-//! the failed particles. The second pass knows one corrected stress per particle, which acts on all its
-//! neighbours: the contribution of the terms to bonds across a crack is subtracted, on both sides of the
+//! intact neighbours (the `edges` of the formulation), so that its energy and force are those of a body
+//! without the failed particles. The second pass knows one corrected stress per particle, which acts on all
+//! its neighbours: the contribution of the terms to bonds across a crack is subtracted, on both sides of the
 //! bond.
 //!
 //! A particle that fails in a step changes sides at the start of the next one, because within a step the
