@@ -6,7 +6,7 @@
 //! other half of the body does.
 
 use crate::boundaries::{PressureLoad, Traction};
-use crate::plugin::{BodyKind, Plugin, SimBuilder};
+use crate::plugin::{BodyKind, HeldSide, Plugin, SimBuilder};
 use crate::scene::{Item, Scene, Select};
 
 /// Warns of every such load.
@@ -29,10 +29,10 @@ fn of_load(item: &Item, sim: &SimBuilder<'_>) -> Option<String> {
         let body = sim.body(*id);
         let first = body.rows.start as u32;
         let is_loaded = |number: &u32| rows.binary_search(&(first + number)).is_ok();
-        let meets = |side: &&crate::plugin::HeldSide| {
-            side.plane.0 != axis && side.moved.iter().any(|(number, _)| is_loaded(number))
-        };
-        let side = body.sides.iter().find(meets).filter(|_| body.kind == BodyKind::Solid)?;
-        Some(side.reached_by(&format!("`{}` on `{face:?}` of body `{}`", item.name(), body.name)))
+        let meets =
+            |side: &&HeldSide| side.plane.0 != axis && side.moved.iter().any(|(number, _)| is_loaded(number));
+        let what = format!("`{}` on `{face:?}` of body `{}`", item.name(), body.name);
+        let sides = body.sides.iter().filter(|_| body.kind == BodyKind::Solid);
+        sides.filter(meets).find_map(|side| side.reached_by(&what))
     })
 }

@@ -4,8 +4,8 @@
 use crate::plugin::{BodyKind, EntryKind, Registry};
 use crate::scene::{BodyDescription, Item, Problem, Scene, unknown};
 
-/// Problems of the names of a scene and their parameters: the first ones that [`build`](super::build()) finds,
-/// for [`load_checked`](crate::scene::load_checked).
+/// Problems of the names of a scene and their parameters: the first ones that [`build`](super::build())
+/// finds, for [`load_checked`](crate::scene::load_checked).
 pub fn name_problems(scene: &Scene, registry: &Registry) -> Vec<Problem> {
     let mut found = Vec::new();
     for (kind, item) in items(scene) {

@@ -5,13 +5,13 @@
 //! the cells of both fill the body between them. Particles keep their lattice where the side is not a plane,
 //! beside symmetry planes and periodic sides, and in scenes with fluids, for which the particles of a body
 //! are its surface. Beside a side that is held along its normal alone, and beside one that is held along all
-//! axes where the body is endless along it, the formulations give the particles shares of their stress for
-//! which a uniform stress is in equilibrium.
+//! axes where the body is endless along it or yields, the formulations give the particles shares of their
+//! stress for which a uniform stress is in equilibrium.
 
 use glam::DVec3;
 
 use crate::boundaries::Symmetry;
-use crate::plugin::{BodyKind, BodyPlan, HeldSide, Offer, Plugin, Registry, SimBuilder};
+use crate::plugin::{BodyKind, BodyPlan, HeldSide, Offer, Plugin, Registry, SideHold, SimBuilder};
 use crate::scene::{Edge, Face, Scene};
 use crate::shapes::{Aabb, Region};
 
@@ -56,9 +56,8 @@ pub(super) fn place(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>
                     continue;
                 }
                 let (axis, sign) = face.outward();
-                let is_endless = is_endless(scene, axis, body);
-                let side =
-                    HeldSide { normal: sign * DVec3::AXES[axis], plane: (axis, at), moved, is_endless };
+                let hold = if is_endless(scene, axis, body) { SideHold::Endless } else { SideHold::Drawn };
+                let side = HeldSide { normal: sign * DVec3::AXES[axis], plane: (axis, at), moved, hold };
                 sides[id.0].push((side, support.axes));
             }
         });
@@ -80,12 +79,16 @@ fn place_body(body: &mut BodyPlan, sides: &[(HeldSide, [bool; 3])], axes: usize)
     let is_held = |side: &HeldSide, axis: usize| {
         sides.iter().any(|(other, held)| other.normal == side.normal && held[axis])
     };
-    // A stress that is uniform up to a side needs a side that can contract, or one without edges.
-    let is_drawn = |side: &HeldSide, held: &[bool; 3]| {
-        held[side.plane.0] && (side.is_endless || (0..axes).any(|axis| !is_held(side, axis)))
+    let yields = body.solid_law().is_ok_and(|law| law.initial_yield_stress().is_some_and(f64::is_finite));
+    // A stress that is uniform up to a side needs a side that can contract, or one without edges. Beside a
+    // clamped one it is not, but what yields finds the layer with the smallest force.
+    let hold = |side: &HeldSide| {
+        let is_clamped = side.hold == SideHold::Drawn && (0..axes).all(|axis| is_held(side, axis));
+        if is_clamped { yields.then_some(SideHold::Clamped) } else { Some(side.hold) }
     };
-    let drawn = sides.iter().filter(|(side, held)| is_drawn(side, held));
-    body.sides.extend(drawn.map(|(side, _)| side.clone()));
+    let balanced = sides.iter().filter(|(side, held)| held[side.plane.0]);
+    let balanced = balanced.filter_map(|(side, _)| Some(HeldSide { hold: hold(side)?, ..side.clone() }));
+    body.sides.extend(balanced.collect::<Vec<_>>());
 }
 
 /// Whether a body continues beyond both of its ends along each axis but this one: sides along this axis have

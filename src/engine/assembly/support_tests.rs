@@ -367,3 +367,37 @@ fn metal_sheared_between_sides_without_edges_strains_evenly() {
         assert!(least > 0.98 && most < 1.02, "{dimension}, {formulation}: {least} {most}");
     }
 }
+
+/// Far from the ends of a long strip. With shares of one, 1.5 of the mean at the sides and 0.4 in the third
+/// layer.
+#[test]
+fn metal_sheared_between_clamps_strains_evenly() {
+    for (formulation, tolerance) in [("TotalLagrangian", 0.03), ("Eulerian()", 0.15)] {
+        let text = format!(
+            r#"(dimension: Two,
+                materials: {{"metal": J2(density: 2700, young: 70e9, poisson: 0.3,
+                    hardening: Linear(yield_stress: 4e8, modulus: 1e9))}},
+                bodies: [(name: "strip", material: "metal", shape: Box(min: (0, 0), max: (0.16, 0.01)),
+                    spacing: 0.00125, formulation: {formulation})],
+                conditions: [Fix(on: Select(face: MinY)), Velocity(on: Select(face: MaxY), value: (10, 0)),
+                    InitialVelocity(on: Select(), value: ("1e3*y", 0))],
+                time: (end: 7e-5))"#
+        );
+        let (scene, source) = parse(Source::new("clamped.ron", text)).unwrap_or_else(|e| panic!("{e}"));
+        let mut sim = build(&scene, &source, &Registry::standard()).unwrap_or_else(|e| panic!("{e}"));
+        sim.run(|_| true).unwrap();
+        assert!(sim.warnings().is_empty(), "{:?}", sim.warnings());
+        let (view, rows) = sim.world().body_view(BodyId(0));
+        let (place, strain) =
+            (view.read::<ReferencePosition>().unwrap(), view.read::<PlasticStrain>().unwrap());
+        let middle = rows.filter(|&row| (place[row].0.x - 0.08).abs() < 0.01);
+        let mut layers = [(0.0, 0.0); 8];
+        for row in middle {
+            let layer = &mut layers[((place[row].0.y / 0.00125) as usize).min(7)];
+            *layer = (layer.0 + strain[row].0, layer.1 + 1.0);
+        }
+        let means = layers.map(|(sum, count)| sum / count);
+        let mean = means.iter().sum::<f64>() / 8.0;
+        assert!(means.iter().all(|layer| (layer / mean - 1.0).abs() < tolerance), "{formulation}: {means:?}");
+    }
+}

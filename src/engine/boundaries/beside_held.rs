@@ -16,5 +16,5 @@ pub(super) fn warning(label: &str, body: &BodyPlan, skin: &Skin, facets: &[u32])
         normal[axis].abs() < ACROSS && [a, b, c].iter().any(|x| (x[axis] - at).abs() < tolerance)
     };
     let side = body.sides.iter().find(|side| facets.iter().any(|&facet| reaches(facet, side.plane)))?;
-    Some(side.reached_by(&format!("the {label} on the surface of body `{}`", body.name)))
+    side.reached_by(&format!("the {label} on the surface of body `{}`", body.name))
 }

@@ -21,7 +21,7 @@ pub use distances::Distances;
 pub use error::SetupError;
 pub use handed::ForBodies;
 pub use offers::{BodyKind, Offer};
-pub use plan::{BodyPlan, HeldSide};
+pub use plan::{BodyPlan, HeldSide, SideHold};
 pub use prescription::{MotionOfPlace, Prescription};
 pub(crate) use registry::FormulationEntry;
 pub use registry::{Entry, EntryKind, Registry};

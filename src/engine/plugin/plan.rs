@@ -15,8 +15,19 @@ use crate::scene::{Problem, Vec3};
 use crate::shapes::{Aabb, Site};
 use crate::world::{BodyId, Column, ColumnSet, Damage, PhaseId};
 
-/// A plane side of a body whose particles are held along its normal, and free along another axis or without
-/// edges: they have been moved onto it.
+/// How a side is held beside which particles carry shares of their stress.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SideHold {
+    /// Along its normal, and free along another axis.
+    Drawn,
+    /// Along its normal and perhaps others; the body continues beyond all of its edges, in mirror images or
+    /// periods.
+    Endless,
+    /// Along all axes, where the body yields.
+    Clamped,
+}
+
+/// A plane side of a body whose particles are held along its normal: they have been moved onto it.
 #[derive(Clone, Debug)]
 pub struct HeldSide {
     /// Unit normal out of the body.
@@ -25,19 +36,22 @@ pub struct HeldSide {
     pub plane: (usize, f64),
     /// The particles, by their numbers, ascending, and how far they have been moved, m.
     pub moved: Vec<(u32, DVec3)>,
-    /// Whether the body continues beyond all edges of the side, in mirror images or periods.
-    pub is_endless: bool,
+    /// How it is held.
+    pub hold: SideHold,
 }
 
 impl HeldSide {
     /// Warning of a load or a contact that reaches the side across its normal, such as "`Pressure` on the
-    /// body `b`".
-    pub fn reached_by(&self, what: &str) -> String {
+    /// body `b`", where it is not clamped.
+    pub fn reached_by(&self, what: &str) -> Option<String> {
+        if self.hold == SideHold::Clamped {
+            return None;
+        }
         let (axis, at) = (["X", "Y", "Z"][self.plane.0], number(self.plane.1));
-        format!(
+        Some(format!(
             "{what} reaches its side at {} = {at} m, which is held along its normal alone: stresses in the two particles beside that edge are some 20 % off, however fine they are; `Symmetry(plane: {axis}, at: {at})` in the place of that support has 1 %",
             axis.to_lowercase()
-        )
+        ))
     }
 }
 
@@ -77,7 +91,7 @@ pub struct BodyPlan {
     pub carried: Vec<(u32, f64)>,
     /// Held particles behind that edge, which do not interact, by their numbers, ascending.
     pub hidden: Vec<u32>,
-    /// Sides held along their normals.
+    /// Sides beside which particles carry shares of their stress.
     pub sides: Vec<HeldSide>,
     /// Box around its shape, m.
     pub bounds: Aabb,

@@ -24,14 +24,12 @@ pub(super) struct ReachedSide {
 impl ReachedSide {
     /// The held sides of a body.
     pub fn of(body: &BodyPlan) -> impl Iterator<Item = Self> + '_ {
-        let of_side = |side: &HeldSide| Self {
-            body: body.id,
-            axis: side.plane.0,
-            particles: side.moved.iter().map(|(number, _)| *number).collect(),
-            warning: side.reached_by(&format!("contact on body `{}`", body.name)),
-            is_told: false,
+        let of_side = |side: &HeldSide| {
+            let warning = side.reached_by(&format!("contact on body `{}`", body.name))?;
+            let particles = side.moved.iter().map(|(number, _)| *number).collect();
+            Some(Self { body: body.id, axis: side.plane.0, particles, warning, is_told: false })
         };
-        body.sides.iter().map(of_side)
+        body.sides.iter().filter_map(of_side)
     }
 
     /// Checks whether a particle on the side carries a notable force of a patch tangential to the side, and

@@ -1,7 +1,7 @@
 //! The warning of sides beside which a uniform stress is not in balance.
 
 use super::body::HeldBody;
-use crate::plugin::HeldSide;
+use crate::plugin::{HeldSide, SideHold};
 
 /// Imbalance from which on plastic strain may be off by more than a tenth; it was chosen by the table of
 /// lattices in docs/solids.md.
@@ -38,9 +38,9 @@ pub(in crate::formulations) fn warning_of_update(body: &HeldBody<'_>) -> Option<
 fn beside(body: &HeldBody<'_>) -> Option<String> {
     let plan = body.plan;
     let flows = || plan.solid_law().is_ok_and(|law| law.initial_yield_stress().is_some_and(f64::is_finite));
-    let side = plan.sides.first().filter(|_| flows())?;
+    let side = plan.sides.iter().find(|side| side.hold != SideHold::Clamped).filter(|_| flows())?;
     let (name, face) = (&plan.name, face(side));
-    let along = if side.is_endless {
+    let along = if side.hold == SideHold::Endless {
         "has no edges and is held or driven"
     } else {
         "is held or drawn along its normal alone"
