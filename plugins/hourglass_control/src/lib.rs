@@ -145,7 +145,7 @@ fn flows(id: BodyId, sim: &SimBuilder<'_>) -> Result<bool, SetupError> {
 
 /// Whether the supports of a body follow its deformation.
 fn follows(id: BodyId, sim: &SimBuilder<'_>) -> bool {
-    sim.body(id).distances == Distances::HalfWay
+    sim.body(id).distances == Distances::PartWay
 }
 
 /// The bodies that take terms which fold into the internal force, and those that take pair terms alone: their

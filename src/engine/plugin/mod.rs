@@ -18,6 +18,7 @@ mod traits;
 pub use builder::SimBuilder;
 pub(crate) use contact_pairs::contact_pairs;
 pub use distances::Distances;
+pub(crate) use distances::FOLLOWED;
 pub use error::SetupError;
 pub use handed::ForBodies;
 pub use offers::{BodyKind, Offer};

@@ -161,7 +161,7 @@ fn press(sim: &Simulation) {
 
 #[test]
 fn forces_return_by_the_transpose_where_shares_follow_the_deformation() {
-    let kinds = [Distances::Present, Distances::HalfWay];
+    let kinds = [Distances::Present, Distances::PartWay];
     for ((dimension, shape), distances) in kinds.iter().flat_map(|kind| SHAPES.map(|shape| (shape, *kind))) {
         let sim = simulation(dimension, shape);
         let skin = Arc::new(skin_of(&sim, BodyId(0), (dimension, shape), distances));

@@ -98,7 +98,7 @@ impl Formulation for Eulerian {
     }
 
     fn distances(&self, body: &BodyPlan) -> Distances {
-        if self.follows(body) { Distances::HalfWay } else { Distances::Present }
+        if self.follows(body) { Distances::PartWay } else { Distances::Present }
     }
 
     fn columns(columns: &mut ColumnSet) {

@@ -78,6 +78,7 @@ impl Run for VelocityGradients {
                 if packed.renew_supports(&mut metric, &deformation, damage.as_deref()) {
                     update_lists(&mut packed, place, start, motion, step.world)?;
                 }
+                supports::warn(&packed.lists.bodies, &deformation, damage.as_deref(), step);
             }
         }
         packed.lists.leave_out_elsewhere(place, start, &deformation);

@@ -6,13 +6,18 @@
 //! apart from them: between two changes the weights depend on positions alone, and a small oscillation
 //! changes none.
 
+use std::ops::RangeInclusive;
+
 use glam::{DMat3, DVec3};
 
 use super::lists::EulerianBody;
 use crate::column;
 use crate::formulations::bonded::{Ellipsoid, SeenEllipsoid};
 use crate::linalg::{Eigen, Sym3};
+use crate::notation::quantity;
 use crate::parallel::{for_each_own_block, share_rows, sum_over_own_blocks};
+use crate::plugin::FOLLOWED;
+use crate::schedule::{Step, raise_warning};
 use crate::solids::fill_rows;
 use crate::symmetry::Ghosts;
 use crate::world::{Damage, DeformationGradient};
@@ -28,11 +33,16 @@ pub(crate) const SUPPORT_CHANGE: &str = "support_change";
 /// Steps between two looks at the deformation.
 pub(super) const EVERY: u64 = 16;
 /// Logarithmic change of the half axes of a particle from which on all of its body are renewed: that of a
-/// stretch by 1.28 at constant volume, half of which an ellipsoid follows.
+/// stretch by 1.35 at constant volume.
 const CHANGE: f64 = 0.15;
-/// Longest half axis, and shortest one's inverse: sheared much farther, a body has other neighbours than its
-/// first ones, and an ellipsoid of these would reach across all of it.
-const LONGEST: f64 = 3.0;
+/// Half axis over the stretch along it, at least: it covers two stretched spacings at the usual support. With
+/// two thirds, metal sheared to three lost most of its stress.
+const LEAST_SHARE: f64 = 0.82;
+/// Bounds of the half axes: sheared much farther, a body has other neighbours than its first ones, and an
+/// ellipsoid of these would reach across all of it.
+const AXES: RangeInclusive<f64> = 1.0 / 3.0..=6.0;
+/// Share of the particles of a body beyond these bounds that is worth a warning.
+const BEYOND: f64 = 0.02;
 
 /// The supports of a phase.
 #[derive(Default)]
@@ -126,8 +136,45 @@ fn target(f: &DMat3, is_failed: bool) -> Sym3 {
     if is_failed {
         return Sym3::IDENTITY;
     }
-    let least = LONGEST.powi(-2);
-    Eigen::new(&Ellipsoid::following(f)).map(|square| square.clamp(least, 1.0 / least))
+    let axis = |stretch: f64| stretch.powf(FOLLOWED).max(LEAST_SHARE * stretch);
+    let bounded = |axis: f64| axis.clamp(*AXES.start(), *AXES.end());
+    Eigen::new(&Sym3::gram(f.transpose())).map(|square| bounded(axis(square.sqrt())).powi(-2))
+}
+
+/// Says of every body whose supports follow it how many of its particles are stretched farther than they do.
+pub(super) fn warn(
+    bodies: &[EulerianBody],
+    deformation: &[DeformationGradient],
+    damage: Option<&[Damage]>,
+    step: &mut Step<'_>,
+) {
+    let farthest = AXES.end() / LEAST_SHARE;
+    let is_beyond = |row: usize| {
+        let is_failed = damage.is_some_and(|own| own[row].0 >= 1.0);
+        !is_failed && Sym3::gram(deformation[row].0).trace() > farthest * farthest
+    };
+    for body in bodies.iter().filter(|body| body.follows) {
+        let own = &deformation[body.rows.clone()];
+        let count = sum_over_own_blocks(own, &|first, own: &[DeformationGradient]| {
+            let rows = body.rows.start + first..;
+            rows.zip(own).filter(|(row, _)| is_beyond(*row)).count() as f64
+        });
+        let all = sum_over_own_blocks(own, &|_, own: &[DeformationGradient]| own.len() as f64);
+        if count <= BEYOND * all {
+            continue;
+        }
+        let name = &step.world.body(body.id).name;
+        let begin = format!("the supports of Eulerian body `{name}` follow its deformation no farther:");
+        let time = step.clock.time;
+        raise_warning(step.warnings, &begin, count as usize, || {
+            format!(
+                "of its {all} particles are stretched to more than {farthest:.1} times their length at {}; their stresses may be far too \
+                 small: `support_follows: false` keeps spheres, which can be sheared farther on a regular lattice, and the plugin \
+                 `failure` lets the material part",
+                quantity(time, "s")
+            )
+        });
+    }
 }
 
 /// Logarithmic distance of two ellipsoids: the norm of the logarithms of the half axes of one in the
