@@ -10,8 +10,8 @@
 //! x = sum_j s_j y_j ,   y_j = x_j + F_j (X - X_j) ,   s_j ~ (1 - d_j/R)^3 ,   d_j = |F_j (X - X_j)| ,   sum s_j = 1
 //! ```
 //!
-//! Where supports are ellipsoids that follow the deformation half way, so do these distances:
-//! `d_j = (|X - X_j| |F_j (X - X_j)|)^(1/2)`.
+//! Where supports are ellipsoids that follow the deformation part of the way, so do these distances:
+//! `d_j = |X - X_j|^(5/16) |F_j (X - X_j)|^(11/16)`.
 //!
 //! The transpose has the change of the shares with F: a force f on a vertex is s_j f on the particles, and
 //! the couples `[s_j f + (f . u_j) g_j] (x) (X - X_j)` with `u_j = y_j - x` and g_j the slope of the share
