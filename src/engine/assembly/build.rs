@@ -115,10 +115,7 @@ fn start(
     for (item, step) in std::mem::take(&mut sim.setup) {
         let mut setup =
             Setup { world: &world, resources: &mut resources, held: &held, warnings: sim.warnings.get_mut() };
-        step(&mut setup).map_err(|error| match &item {
-            Some(item) => error.into_problems(item),
-            None => at_scene(scene, error),
-        })?;
+        step(&mut setup).map_err(|error| at_item(scene, item.as_ref(), error))?;
     }
     let schedule = Schedule::new(std::mem::take(&mut sim.systems), &sim.sub_cycled)
         .map_err(|e| vec![Problem::new(e.to_string())])?;
@@ -144,6 +141,15 @@ fn start(
         mirrored,
     };
     Ok(Simulation::new(parts, scene))
+}
+
+/// A fault of an item, if there is one, or of a body that it names by its path.
+fn at_item(scene: &Scene, item: Option<&Item>, error: SetupError) -> Vec<Problem> {
+    match (&error, item) {
+        (SetupError::Parameter { field, .. }, _) if field.starts_with("bodies[") => at_scene(scene, error),
+        (_, Some(item)) => error.into_problems(item),
+        (_, None) => at_scene(scene, error),
+    }
 }
 
 /// A fault that belongs to no item, such as one of a set-up step.
@@ -217,10 +223,7 @@ fn assemble(scene: &Scene, parsed: Vec<Parsed<'_>>, sim: &mut SimBuilder<'_>) ->
         sim.scope = BodySet::new(bodies.iter().map(|(id, _)| *id));
         sim.cite(entry.reference);
         let item = &scene.bodies[first.0].formulation;
-        (entry.assemble)(bodies, sim).map_err(|error| match error {
-            SetupError::Parameter { ref field, .. } if field.starts_with("bodies[") => at_scene(scene, error),
-            error => error.into_problems(item),
-        })?;
+        (entry.assemble)(bodies, sim).map_err(|error| at_item(scene, Some(item), error))?;
     }
     Ok(())
 }
