@@ -37,8 +37,8 @@ pub enum CommandFailure {
 }
 
 impl CommandFailure {
-    /// The failure of a run before its first step: what fails then is the scene, if the error has a place in
-    /// it.
+    /// The failure of a run before its first step, or of a check: what fails then is the scene, if the error
+    /// has a place in it.
     pub(super) fn of_start(error: &RunError, source: &Source) -> Self {
         match in_scene(error, source) {
             Some(error) => Self::Scene(error),

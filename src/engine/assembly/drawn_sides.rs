@@ -19,10 +19,7 @@ pub(super) fn warn(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>)
             for (id, rows) in selection.parts.iter().filter(|_| support.axes[face.outward().0] && !is_clamped)
             {
                 let body = sim.body(*id);
-                let flows = || {
-                    body.solid_law().is_ok_and(|law| law.initial_yield_stress().is_some_and(f64::is_finite))
-                };
-                if body.kind == BodyKind::Solid && rows.len() < body.sites.len() && flows() {
+                if body.kind == BodyKind::Solid && rows.len() < body.sites.len() && body.yields() {
                     sides.entry(*id).or_insert(face);
                 }
             }

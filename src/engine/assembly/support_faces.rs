@@ -79,7 +79,7 @@ fn place_body(body: &mut BodyPlan, sides: &[(HeldSide, [bool; 3])], axes: usize)
     let is_held = |side: &HeldSide, axis: usize| {
         sides.iter().any(|(other, held)| other.normal == side.normal && held[axis])
     };
-    let yields = body.solid_law().is_ok_and(|law| law.initial_yield_stress().is_some_and(f64::is_finite));
+    let yields = body.yields();
     // A stress that is uniform up to a side needs a side that can contract, or one without edges. Beside a
     // clamped one it is not, but what yields finds the layer with the smallest force.
     let hold = |side: &HeldSide| {

@@ -126,6 +126,11 @@ impl BodyPlan {
         }
     }
 
+    /// Whether it is a solid that can yield.
+    pub fn yields(&self) -> bool {
+        self.solid_law().is_ok_and(|law| law.initial_yield_stress().is_some_and(f64::is_finite))
+    }
+
     /// Whether its particles can fail.
     pub fn can_fail(&self) -> bool {
         let mut state = ColumnSet::default();

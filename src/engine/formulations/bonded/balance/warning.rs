@@ -37,8 +37,7 @@ pub(in crate::formulations) fn warning_of_update(body: &HeldBody<'_>) -> Option<
 /// The beginning of warnings of a body with sides beside which its metal may strain unevenly.
 fn beside(body: &HeldBody<'_>) -> Option<String> {
     let plan = body.plan;
-    let flows = || plan.solid_law().is_ok_and(|law| law.initial_yield_stress().is_some_and(f64::is_finite));
-    let side = plan.sides.iter().find(|side| side.hold != SideHold::Clamped).filter(|_| flows())?;
+    let side = plan.sides.iter().find(|side| side.hold != SideHold::Clamped).filter(|_| plan.yields())?;
     let (name, face) = (&plan.name, face(side));
     let along = if side.hold == SideHold::Endless {
         "has no edges and is held or driven"

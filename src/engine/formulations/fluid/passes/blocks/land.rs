@@ -21,8 +21,7 @@ pub struct BlockOutput<'a> {
     pub adds: bool,
 }
 
-/// Writes the forces on the particles of a block, [`PARTS`] parts
-/// of each, and the results of the terms.
+/// Writes the forces on the particles of a block, [`PARTS`] parts of each, and the results of the terms.
 pub fn land(sums: &BlockForces, of_terms: &[TermSums], landing: BlockOutput<'_>, rows: &mut ForceRows<'_>) {
     let BlockOutput { particles, first, plane, adds } = landing;
     let ForceRows { written, parts } = rows;
